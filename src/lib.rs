@@ -1,0 +1,5 @@
+//! A Whitted-style recursive ray tracer.
+
+pub mod color;
+
+pub use color::Rgb;

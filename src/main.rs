@@ -1,0 +1,3 @@
+//! The `whitted` command.
+
+fn main() {}
