@@ -1,0 +1,257 @@
+//! The circular cone about any axis, from its apex to its base, open (side only) or closed by the base disc.
+//!
+//! In its own frame the apex is the origin, the axis is y and the base lies at y = −h: with R the base radius, the
+//! side is x² + z² = (R/h)² y², −h ≤ y ≤ 0. The equation has a second nappe, above the apex, which
+//! is no part of the cone.
+//!
+//! **Intersection.** Scaled by (h, R, h), the cone is the unit cone X² + Z² = Y². With F = (h fₓ, R f_y, h f_z) and
+//! E = (h dₓ, R d_y, h d_z), the ray F + t E meets it where
+//!
+//! (Eₓ² − E_y² + E_z²) t² + 2 (FₓEₓ − F_yE_y + F_zE_z) t + (Fₓ² − F_y² + F_z²) = 0.
+//!
+//! Roots with −R h ≤ Y ≤ 0 count. Three cancellations lurk here. The discriminant b² − ac is
+//! |(F×E)ₓ|² + |(F×E)_z|² − |(F×E)_y|², a difference of squares: it is taken as (m − |w|)(m + |w|).
+//! The coefficients vanish near the cone: they are summed with compensation. And near the apex, Y = F_y + t E_y
+//! loses everything: with p₁ = FₓE_y − F_yEₓ, p₂ = F_zE_y − F_yE_z and N = Eₓp₁ + E_zp₂, the
+//! heights of the two roots are (−N ∓ E_y √D)/a and their product is (p₁² + p₂²)/a, so the one is a sum of
+//! like signs and the other a quotient.
+//!
+//! **Normal.** Put a point of the side at the angle a about the axis and let t be the angle by which the normal rises
+//! above the horizontal. The generator falls by h over R, so tan t = R/h, and the gradient of
+//! x² + z² − (R/h)² y² gives
+//!
+//! n = (sin a cos t, sin t, cos a cos t), with sin a = x/ρ, cos a = z/ρ, ρ = √(x² + z²),
+//!
+//! that is (h x, R ρ, h z) normalised. The report that this program started from writes sin a in both the first and
+//! the last component of its code; then n is not a unit vector and does not turn with the point. At the apex, where
+//! there is no normal, the axis is taken.
+
+use glam::{DVec2, DVec3};
+
+use super::{
+    Bounds, Ends, Similarity,
+    cylinder::disc_reach,
+    hit::{Crossing, Crossings, NO_CROSSINGS, Surface},
+    ray::{Departure, Ray},
+    shape::ShapeError,
+    solid::{Interval, leaving},
+};
+use crate::math::{Frame, Roots, compensated::hypot, difference_of_products, dot};
+
+/// The faces of a cone.
+const SIDE: u8 = 0;
+const BASE: u8 = 1;
+
+/// A circular cone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cone {
+    base: DVec3,
+    apex: DVec3,
+    frame: Frame,
+    height: f64,
+    radius: f64,
+    ends: Ends,
+}
+
+/// A crossing of the infinite double cone: its parameter and its height above the apex, in the unit cone's units.
+#[derive(Clone, Copy)]
+struct Root {
+    t: f64,
+    y: f64,
+}
+
+/// What a line and the infinite double cone have in common.
+#[derive(Clone, Copy)]
+struct SideRoots {
+    /// The leading coefficient: positive if the line crosses one nappe twice (or none), negative if it crosses both.
+    a: f64,
+    near: Root,
+    far: Root,
+}
+
+impl Cone {
+    /// The cone with a disc of `radius` about `base` for its base.
+    ///
+    /// # Errors
+    /// A radius that is not positive and finite, or a base and apex that are not finite or not apart.
+    pub fn try_new(base: DVec3, apex: DVec3, radius: f64, ends: Ends) -> Result<Self, ShapeError> {
+        ShapeError::check_length("radius", radius)?;
+        let (axis, height) = ShapeError::check_axis(("base", base), ("apex", apex))?;
+        Ok(Self { base, apex, frame: Frame::around(axis), height, radius, ends })
+    }
+
+    /// The middle of the base, and the apex.
+    pub fn axis_points(&self) -> [DVec3; 2] {
+        [self.base, self.apex]
+    }
+
+    pub(crate) fn bounds(&self) -> Bounds {
+        let reach = disc_reach(self.frame.axis()) * self.radius;
+        Bounds::of_points([self.base - reach, self.base + reach, self.apex])
+    }
+
+    pub(crate) fn mapped(&self, map: &Similarity) -> Self {
+        Self {
+            base: map.point(self.base),
+            apex: map.point(self.apex),
+            height: map.length(self.height),
+            radius: map.length(self.radius),
+            ..*self
+        }
+    }
+
+    /// The crossings of the line of `ray`.
+    #[inline(always)]
+    pub fn crossings(&self, ray: &Ray) -> Crossings {
+        let (f, d) = (self.frame.to_local(ray.origin - self.apex), self.frame.to_local(ray.dir));
+        match self.ends {
+            Ends::Open => self.open(f, d),
+            Ends::Closed => {
+                let above_base = self.frame.axis().dot(ray.origin - self.base);
+                self.inside(f, d, above_base).map_or(NO_CROSSINGS, Interval::crossings)
+            }
+        }
+    }
+
+    /// The vector `v` of the cone's frame where the cone is the unit cone.
+    #[inline(always)]
+    fn scaled_to_unit(&self, v: DVec3) -> DVec3 {
+        DVec3::new(self.height * v.x, self.radius * v.y, self.height * v.z)
+    }
+
+    #[inline(always)]
+    fn side_roots(&self, f: DVec3, d: DVec3) -> Option<SideRoots> {
+        let (f, e) = (self.scaled_to_unit(f), self.scaled_to_unit(d));
+        let p1 = difference_of_products(f.x, e.y, f.y, e.x);
+        let p2 = difference_of_products(f.z, e.y, f.y, e.z);
+        let w = difference_of_products(f.x, e.z, f.z, e.x).abs();
+        let m = hypot(p1, p2);
+        let flip = |v: DVec3| DVec3::new(v.x, -v.y, v.z);
+        let a = dot(flip(e), e);
+        // A line within the cone's slope (a < 0) always meets it; only rounding can say otherwise.
+        let gap = if a < 0.0 { (m - w).max(0.0) } else { m - w };
+        if !(gap >= 0.0) {
+            return None; // NaN is a miss
+        }
+        let (b, c) = (dot(flip(f), e), dot(flip(f), f));
+        let root = (gap * (m + w)).sqrt();
+        let roots = Roots::new(a, b, c, root);
+        let n = difference_of_products(e.x, p1, -e.z, p2);
+        let s = e.y * root.copysign(b);
+        let (stable, other) = (-n - s, s - n); // a times the heights of the two roots
+        let product = p1.mul_add(p1, p2 * p2); // a times the product of the heights
+        let apex = |y: f64| if y.is_nan() { 0.0 } else { y }; // 0/0: the line through the apex
+        let (y_stable, y_other) = if stable.abs() >= other.abs() {
+            (stable / a, apex(product / stable))
+        } else {
+            (apex(product / other), other / a)
+        };
+        let (u, v) = (Root { t: roots.stable, y: y_stable }, Root { t: roots.other, y: y_other });
+        Some(if u.t <= v.t {
+            SideRoots { a, near: u, far: v }
+        } else {
+            SideRoots { a, near: v, far: u }
+        })
+    }
+
+    #[inline(always)]
+    fn on_side(&self, root: Root) -> Crossing {
+        if root.y <= 0.0 && root.y >= -self.radius * self.height {
+            Crossing::at(root.t)
+        } else {
+            Crossing::NONE
+        }
+    }
+
+    #[inline(always)]
+    fn open(&self, f: DVec3, d: DVec3) -> Crossings {
+        self.side_roots(f, d)
+            .map_or(NO_CROSSINGS, |roots| [self.on_side(roots.near), self.on_side(roots.far)])
+    }
+
+    /// The interval of the ray inside the closed cone, `above_base` being the height of its origin above the base.
+    #[inline(always)]
+    fn inside(&self, f: DVec3, d: DVec3, above_base: f64) -> Option<Interval> {
+        let roots = self.side_roots(f, d)?;
+        Self::below_apex(&roots, d.y)?.above(above_base, d.y, BASE)
+    }
+
+    /// The interval of the ray inside the infinite lower nappe.
+    #[inline(always)]
+    fn below_apex(roots: &SideRoots, dy: f64) -> Option<Interval> {
+        let SideRoots { a, near, far } = *roots;
+        if a > 0.0 {
+            (near.y <= 0.0 && far.y <= 0.0).then(|| Interval::new(near.t, far.t))
+        } else {
+            // Between the roots the line is outside; it enters or leaves the lower nappe once, at the finite root there.
+            let through = if dy < 0.0 {
+                if far.t.is_finite() { far.t } else { near.t }
+            } else if near.t.is_finite() {
+                near.t
+            } else {
+                far.t
+            };
+            Some(if dy < 0.0 {
+                Interval::new(through, f64::INFINITY)
+            } else {
+                Interval::new(f64::NEG_INFINITY, through)
+            })
+        }
+    }
+
+    /// The crossings of a ray that leaves this cone.
+    ///
+    /// Outward none, as it is convex. Inward from the side, the far side is at −2b/a, without a subtraction.
+    #[inline(always)]
+    pub(crate) fn crossings_from(&self, ray: &Ray, from: &Departure) -> Crossings {
+        if !from.inward {
+            return NO_CROSSINGS;
+        }
+        let (q, d) = (from.local, self.frame.to_local(ray.dir));
+        let (f, e) = (self.scaled_to_unit(q), self.scaled_to_unit(d));
+        let above_base = self.height + q.y;
+        if from.face == BASE {
+            let ahead = self.inside(q, d, above_base.max(0.0));
+            return leaving(ahead);
+        }
+        let a = dot(DVec3::new(e.x, -e.y, e.z), e);
+        let b = dot(DVec3::new(f.x, -f.y, f.z), e);
+        let far = if a > 0.0 { (-2.0 * b / a).max(f64::MIN_POSITIVE) } else { f64::INFINITY };
+        match self.ends {
+            Ends::Closed => leaving(Interval::new(0.0, far).above(above_base, d.y, BASE)),
+            Ends::Open => [self.on_side(Root { t: far, y: far.mul_add(e.y, f.y) }), Crossing::NONE],
+        }
+    }
+
+    pub(crate) fn surface(&self, ray: &Ray, t: f64, face: u8, own: Option<&Departure>) -> Surface {
+        let start =
+            own.map_or_else(|| self.frame.to_local(ray.origin - self.apex), |from| from.local);
+        let mut q = start + self.frame.to_local(ray.dir) * t;
+        let normal = if face == SIDE {
+            q = self.onto_side(q);
+            DVec3::new(self.height * q.x, self.radius * hypot(q.x, q.z), self.height * q.z)
+                .try_normalize()
+                .unwrap_or(DVec3::Y)
+        } else {
+            q.y = -self.height;
+            DVec3::NEG_Y
+        };
+        let point = self.apex + self.frame.to_world(q);
+        let normal = self.frame.to_world(normal);
+        let error = Surface::error_bound(normal, point.abs() + self.radius + self.height);
+        Surface { point, normal, local: q, error, uv: DVec2::ZERO }
+    }
+
+    /// The point of the side nearest to `q`.
+    fn onto_side(&self, q: DVec3) -> DVec3 {
+        let rho = hypot(q.x, q.z);
+        if rho == 0.0 {
+            return DVec3::ZERO; // the apex
+        }
+        // In the half-plane of q the generator goes along (R, −h); how far along it is the foot of the perpendicular?
+        let slant_squared = self.radius.mul_add(self.radius, self.height * self.height);
+        let along = ((self.radius * rho - self.height * q.y) / slant_squared).clamp(0.0, 1.0);
+        let onto = self.radius * along / rho;
+        DVec3::new(q.x * onto, -self.height * along, q.z * onto)
+    }
+}

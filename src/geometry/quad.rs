@@ -1,0 +1,66 @@
+//! The parallelogram q + u e₁ + v e₂ with 0 ≤ u, v ≤ 1, which are its surface coordinates; its front is where e₁ × e₂
+//! points.
+
+use glam::{DVec2, DVec3};
+
+use super::{
+    Bounds, Similarity, flat,
+    hit::{Crossing, Crossings, Surface},
+    ray::Ray,
+    shape::ShapeError,
+};
+use crate::math::cross;
+
+/// A parallelogram.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quad {
+    vertices: [DVec3; 4],
+    normal: DVec3,
+}
+
+impl Quad {
+    /// The parallelogram at `corner` with the edges `edge1` and `edge2`.
+    ///
+    /// The other corners are rounded sums; where faces must share corners exactly, make them with
+    /// [`Polygon`](super::Polygon).
+    ///
+    /// # Errors
+    /// A corner or edges that are not finite, or edges on one line.
+    pub fn try_new(corner: DVec3, edge1: DVec3, edge2: DVec3) -> Result<Self, ShapeError> {
+        let vertices = [corner, corner + edge1, corner + edge1 + edge2, corner + edge2];
+        Ok(Self { vertices, normal: flat::unit_normal(&vertices)? })
+    }
+
+    /// The corners, counterclockwise seen from the front.
+    pub fn vertices(&self) -> [DVec3; 4] {
+        self.vertices
+    }
+
+    pub(crate) fn bounds(&self) -> Bounds {
+        Bounds::of_points(self.vertices)
+    }
+
+    pub(crate) fn mapped(&self, map: &Similarity) -> Self {
+        Self { vertices: self.vertices.map(|v| map.point(v)), normal: self.normal }
+    }
+
+    /// The crossing of the line of `ray`.
+    #[inline(always)]
+    pub fn crossings(&self, ray: &Ray) -> Crossings {
+        [flat::crossing(&self.vertices, self.normal, ray), Crossing::NONE]
+    }
+
+    pub(crate) fn surface(&self, ray: &Ray, t: f64) -> Surface {
+        let mut surface = flat::surface(self.vertices[0], self.normal, ray, t);
+        surface.uv = self.uv(surface.point);
+        surface
+    }
+
+    /// The surface coordinates of a point of the plane, by Cramer's rule.
+    fn uv(&self, point: DVec3) -> DVec2 {
+        let [corner, next, _, last] = self.vertices;
+        let (edge1, edge2, s) = (next - corner, last - corner, point - corner);
+        let area = self.normal.dot(cross(edge1, edge2));
+        DVec2::new(self.normal.dot(cross(s, edge2)), self.normal.dot(cross(edge1, s))) / area
+    }
+}

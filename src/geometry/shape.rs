@@ -1,0 +1,231 @@
+//! Every shape behind one type, with one `match` for each operation, and what makes a shape invalid.
+
+use glam::DVec3;
+use thiserror::Error;
+
+use super::{
+    Bounds, Cone, Cylinder, Polygon, Quad, Similarity, Sphere, Triangle,
+    hit::{Crossings, Hit, NO_CROSSINGS, Surface, first_ahead},
+    ray::{Departure, Ray},
+};
+use crate::math::scale;
+
+/// A surface that a ray can meet. All but the sphere are boxed, so that a million spheres stay small.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Shape {
+    /// A sphere.
+    Sphere(Sphere),
+    /// A circular cylinder.
+    Cylinder(Box<Cylinder>),
+    /// A circular cone.
+    Cone(Box<Cone>),
+    /// A parallelogram.
+    Quad(Box<Quad>),
+    /// A triangle.
+    Triangle(Box<Triangle>),
+    /// A convex polygon.
+    Polygon(Box<Polygon>),
+}
+
+/// Why a shape cannot be made.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ShapeError {
+    /// A coordinate is infinite or not a number.
+    #[error("`{name}` is ({value}), but must be finite")]
+    NotFinite {
+        /// The parameter.
+        name: &'static str,
+        /// Its value.
+        value: DVec3,
+    },
+    /// A length is zero, negative, infinite or not a number.
+    #[error("`{name}` is {value}, but must be positive and finite")]
+    NotPositive {
+        /// The parameter.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// The two ends of an axis are the same point.
+    #[error("`{from}` and `{to}` are both ({at}), but must be apart")]
+    NoAxis {
+        /// One end.
+        from: &'static str,
+        /// The other.
+        to: &'static str,
+        /// Where both are.
+        at: DVec3,
+    },
+    /// A flat shape has no area.
+    #[error("the corners lie on one line, but must span an area")]
+    NoArea,
+    /// A polygon has fewer than three corners.
+    #[error("the polygon has {count} corners, but needs at least 3")]
+    TooFewVertices {
+        /// How many it has.
+        count: usize,
+    },
+    /// A polygon's corners are not in one plane.
+    #[error("corner {index} of the polygon is off the plane of the others (corners count from 0)")]
+    NotFlat {
+        /// The corner, counted from 0.
+        index: usize,
+    },
+    /// A polygon is not convex.
+    #[error("the polygon is not convex at corner {index} (corners count from 0)")]
+    NotConvex {
+        /// The corner, counted from 0.
+        index: usize,
+    },
+}
+
+impl ShapeError {
+    pub(super) fn check_point(name: &'static str, value: DVec3) -> Result<(), Self> {
+        if value.is_finite() { Ok(()) } else { Err(Self::NotFinite { name, value }) }
+    }
+
+    pub(super) fn check_length(name: &'static str, value: f64) -> Result<(), Self> {
+        if value > 0.0 && value.is_finite() {
+            Ok(())
+        } else {
+            Err(Self::NotPositive { name, value })
+        }
+    }
+
+    /// The unit vector from one end of an axis to the other, and their distance.
+    pub(super) fn check_axis(
+        (from, p): (&'static str, DVec3),
+        (to, q): (&'static str, DVec3),
+    ) -> Result<(DVec3, f64), Self> {
+        Self::check_point(from, p)?;
+        Self::check_point(to, q)?;
+        let (axis, e) = scale::normalized(q - p);
+        let length = axis.length();
+        if !(length > 0.0) {
+            return Err(Self::NoAxis { from, to, at: p });
+        }
+        let distance = scale::scaled(DVec3::splat(length), -e).x;
+        Self::check_length("height", distance)?;
+        Ok((axis / length, distance))
+    }
+}
+
+impl Shape {
+    /// The smallest axis-aligned box about the shape, up to rounding.
+    pub fn bounds(&self) -> Bounds {
+        match self {
+            Self::Sphere(s) => s.bounds(),
+            Self::Cylinder(s) => s.bounds(),
+            Self::Cone(s) => s.bounds(),
+            Self::Quad(s) => s.bounds(),
+            Self::Triangle(s) => s.bounds(),
+            Self::Polygon(s) => s.bounds(),
+        }
+    }
+
+    /// The image of the shape under a change of coordinates.
+    #[must_use]
+    pub fn mapped(&self, map: &Similarity) -> Self {
+        match self {
+            Self::Sphere(s) => s.mapped(map).into(),
+            Self::Cylinder(s) => s.mapped(map).into(),
+            Self::Cone(s) => s.mapped(map).into(),
+            Self::Quad(s) => s.mapped(map).into(),
+            Self::Triangle(s) => s.mapped(map).into(),
+            Self::Polygon(s) => s.mapped(map).into(),
+        }
+    }
+
+    /// Where the line of `ray` crosses the surface, whatever surface it leaves.
+    #[inline(always)]
+    pub fn crossings(&self, ray: &Ray) -> Crossings {
+        match self {
+            Self::Sphere(s) => s.crossings(ray),
+            Self::Cylinder(s) => s.crossings(ray),
+            Self::Cone(s) => s.crossings(ray),
+            Self::Quad(s) => s.crossings(ray),
+            Self::Triangle(s) => s.crossings(ray),
+            Self::Polygon(s) => s.crossings(ray),
+        }
+    }
+
+    /// Where a ray that leaves this very shape crosses it again.
+    ///
+    /// A flat face is not met again; a convex solid only by a ray that goes inward, where its own root of the
+    /// equation is known to be zero and the other one needs no subtraction.
+    #[inline(always)]
+    pub fn crossings_from(&self, ray: &Ray, from: &Departure) -> Crossings {
+        match self {
+            Self::Sphere(_) => Sphere::crossings_from(ray, from),
+            Self::Cylinder(s) => s.crossings_from(ray, from),
+            Self::Cone(s) => s.crossings_from(ray, from),
+            Self::Quad(_) | Self::Triangle(_) | Self::Polygon(_) => NO_CROSSINGS,
+        }
+    }
+
+    /// Where `ray` crosses this shape, if that is number `primitive`, minding where the ray comes from.
+    #[inline(always)]
+    pub(crate) fn crossings_of(&self, ray: &Ray, primitive: u32) -> Crossings {
+        match &ray.from {
+            Some(from) if from.primitive == primitive => self.crossings_from(ray, from),
+            _ => self.crossings(ray),
+        }
+    }
+
+    /// The surface where `ray` meets this shape in `hit`.
+    pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        let own = ray.from.as_ref().filter(|from| from.primitive == hit.primitive);
+        match self {
+            Self::Sphere(s) => s.surface(ray, hit.t, own),
+            Self::Cylinder(s) => s.surface(ray, hit.t, hit.face, own),
+            Self::Cone(s) => s.surface(ray, hit.t, hit.face, own),
+            Self::Quad(s) => s.surface(ray, hit.t),
+            Self::Triangle(s) => s.surface(ray, hit.t),
+            Self::Polygon(s) => s.surface(ray, hit.t),
+        }
+    }
+
+    /// Whether [`Surface::uv`] means anything on this shape.
+    pub fn has_uv(&self) -> bool {
+        matches!(self, Self::Sphere(_) | Self::Quad(_))
+    }
+
+    /// Calls `visit` with every point that defines the shape, whose coordinates a change of origin must carry.
+    pub(crate) fn for_each_point(&self, mut visit: impl FnMut(DVec3)) {
+        match self {
+            Self::Sphere(s) => visit(s.center()),
+            Self::Cylinder(s) => s.axis_points().into_iter().for_each(visit),
+            Self::Cone(s) => s.axis_points().into_iter().for_each(visit),
+            Self::Quad(s) => s.vertices().into_iter().for_each(visit),
+            Self::Triangle(s) => s.vertices().into_iter().for_each(visit),
+            Self::Polygon(s) => s.vertices().iter().copied().for_each(visit),
+        }
+    }
+
+    /// The first hit of a ray with this one shape, both of any scale, and the surface there.
+    ///
+    /// The direction may have any length; `t` counts it. The shape's number is `primitive`, by which a ray knows
+    /// the shape it leaves.
+    pub fn first_hit(&self, primitive: u32, ray: &Ray) -> Option<(Hit, Surface)> {
+        let reach = self.bounds().largest_coordinate().max(ray.origin.abs().max_element());
+        let map = Similarity::scaling(reach);
+        let (shape, (ray, rescale)) = (self.mapped(&map), map.ray(ray));
+        let crossing = first_ahead(&shape.crossings_of(&ray, primitive), f64::INFINITY)?;
+        let hit = Hit { t: crossing.t, primitive, face: crossing.face };
+        let surface = map.surface_back(&shape.surface(&ray, &hit));
+        Some((Hit { t: rescale.apply(hit.t), ..hit }, surface))
+    }
+}
+
+macro_rules! into_shape {
+    ($($shape:ident),*) => { $(
+        impl From<$shape> for Shape {
+            fn from(shape: $shape) -> Self {
+                Self::$shape(shape.into())
+            }
+        }
+    )* };
+}
+into_shape!(Sphere, Cylinder, Cone, Quad, Triangle, Polygon);

@@ -1,0 +1,50 @@
+//! The triangle; its front is where its corners run counterclockwise.
+
+use glam::DVec3;
+
+use super::{
+    Bounds, Similarity, flat,
+    hit::{Crossing, Crossings, Surface},
+    ray::Ray,
+    shape::ShapeError,
+};
+
+/// A flat triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Triangle {
+    vertices: [DVec3; 3],
+    normal: DVec3,
+}
+
+impl Triangle {
+    /// The triangle with these corners. Triangles with common corners leave no gap between them.
+    ///
+    /// # Errors
+    /// Corners that are not finite, or on one line.
+    pub fn try_new(vertices: [DVec3; 3]) -> Result<Self, ShapeError> {
+        Ok(Self { vertices, normal: flat::unit_normal(&vertices)? })
+    }
+
+    /// The corners.
+    pub fn vertices(&self) -> [DVec3; 3] {
+        self.vertices
+    }
+
+    pub(crate) fn bounds(&self) -> Bounds {
+        Bounds::of_points(self.vertices)
+    }
+
+    pub(crate) fn mapped(&self, map: &Similarity) -> Self {
+        Self { vertices: self.vertices.map(|v| map.point(v)), normal: self.normal }
+    }
+
+    /// The crossing of the line of `ray`.
+    #[inline(always)]
+    pub fn crossings(&self, ray: &Ray) -> Crossings {
+        [flat::crossing(&self.vertices, self.normal, ray), Crossing::NONE]
+    }
+
+    pub(crate) fn surface(&self, ray: &Ray, t: f64) -> Surface {
+        flat::surface(self.vertices[0], self.normal, ray, t)
+    }
+}
