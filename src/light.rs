@@ -1,0 +1,14 @@
+//! Point lights.
+
+use glam::DVec3;
+
+use crate::color::Rgb;
+
+/// A light at a point, as bright near as far.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Light {
+    /// Where it is.
+    pub position: DVec3,
+    /// The light that arrives at any point that sees it.
+    pub intensity: Rgb,
+}

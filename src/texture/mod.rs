@@ -1,0 +1,61 @@
+//! Surface colour as a function of the place: plain, a pattern in space, or a picture on the surface.
+
+pub mod image;
+pub mod pattern;
+
+use glam::{DVec2, DVec3};
+
+pub use self::{
+    image::{Image, ImageTextureError},
+    pattern::{Checker, Plaid},
+};
+use crate::{color::Rgb, geometry::Similarity};
+
+/// Where a texture is asked for its colour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TexturePoint {
+    /// The surface coordinates, from the lower left.
+    pub uv: DVec2,
+    /// The place in the scene.
+    pub point: DVec3,
+}
+
+/// The colour of a surface.
+#[derive(Clone, Debug)]
+pub enum Texture {
+    /// One colour everywhere.
+    Solid(Rgb),
+    /// A checker of squares in the plane of x and z.
+    Checker(Checker),
+    /// Two sets of diagonal stripes, woven.
+    Plaid(Plaid),
+    /// A picture laid on the surface coordinates.
+    Image(std::sync::Arc<Image>),
+}
+
+impl Texture {
+    /// The colour at a point, in linear light.
+    pub fn color(&self, at: &TexturePoint) -> Rgb {
+        match self {
+            Self::Solid(color) => *color,
+            Self::Checker(checker) => checker.color(at.point),
+            Self::Plaid(plaid) => plaid.color(at.point),
+            Self::Image(image) => image.sample(at.uv),
+        }
+    }
+
+    /// Whether the colour depends on [`TexturePoint::uv`].
+    pub fn needs_uv(&self) -> bool {
+        matches!(self, Self::Image(_))
+    }
+
+    /// The same texture in a scene whose coordinates were changed by `map`.
+    #[must_use]
+    pub fn mapped(self, map: &Similarity) -> Self {
+        match self {
+            Self::Checker(checker) => Self::Checker(checker.mapped(map)),
+            Self::Plaid(plaid) => Self::Plaid(plaid.mapped(map)),
+            Self::Solid(_) | Self::Image(_) => self,
+        }
+    }
+}
