@@ -1,11 +1,14 @@
 //! The film: what a render fills tile by tile, and how it becomes a file.
 //!
-//! [`Film`] holds linear colours; sRGB appears only in [`encode`], at the very end.
+//! [`Film`] holds linear colours; sRGB appears only in [`encode`], at the very end. [`whole_file`]
+//! puts files on disk whole or not at all.
 
 pub mod encode;
 mod tile;
+pub mod whole_file;
 
 pub use tile::{Tile, tiles};
+pub use whole_file::{FileError, WholeFile};
 
 use crate::Rgb;
 
