@@ -1,12 +1,18 @@
 //! The film: what a render fills tile by tile, and how it becomes a file.
 //!
-//! [`Film`] holds linear colours; sRGB appears only in [`encode`], at the very end. [`whole_file`]
-//! puts files on disk whole or not at all.
+//! [`Film`] holds linear colours; sRGB appears only in [`encode`], at the very end. [`save`] puts a
+//! picture on disk whole or not at all, [`metrics`] measures how far two pictures are apart.
 
 pub mod encode;
+mod error;
+pub mod metrics;
+pub mod save;
 mod tile;
 pub mod whole_file;
 
+pub use error::ImageError;
+pub use metrics::Difference;
+pub use save::OutputFile;
 pub use tile::{Tile, tiles};
 pub use whole_file::{FileError, WholeFile};
 
