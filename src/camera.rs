@@ -90,7 +90,8 @@ impl Camera {
     pub fn view(&self, width: u32, height: u32) -> View {
         let pixel = 2.0 * self.slope / f64::from(height);
         let (right, down) = (self.right * pixel, self.up * -pixel);
-        let corner = self.forward - right * (f64::from(width) / 2.0) - down * (f64::from(height) / 2.0);
+        let corner =
+            self.forward - right * (f64::from(width) / 2.0) - down * (f64::from(height) / 2.0);
         View { eye: self.eye, corner, right, down }
     }
 }
@@ -130,27 +131,39 @@ mod tests {
         let view = assignment().view(600, 600);
         for (i, j) in [(0, 0), (599, 0), (0, 599), (599, 599), (17, 402)] {
             let (x, y) = (f64::from(i) + 0.5, f64::from(j) + 0.5);
-            let expected = DVec3::new(-10.0 + 20.0 * x / 600.0, 10.0 - 20.0 * y / 600.0, -40.0).normalize();
+            let expected =
+                DVec3::new(-10.0 + 20.0 * x / 600.0, 10.0 - 20.0 * y / 600.0, -40.0).normalize();
             let ray = view.ray(DVec2::new(x, y));
-            assert!((ray.dir - expected).length() < 4e-16 && ray.origin == DVec3::ZERO, "{i}, {j}: {}", ray.dir);
+            assert!(
+                (ray.dir - expected).length() < 4e-16 && ray.origin == DVec3::ZERO,
+                "{i}, {j}: {}",
+                ray.dir
+            );
         }
     }
 
     #[test]
     fn a_wide_film_sees_more_at_the_sides_only() {
         let (square, wide) = (assignment().view(100, 100), assignment().view(200, 100));
-        let difference = square.ray(DVec2::new(30.5, 7.5)).dir - wide.ray(DVec2::new(80.5, 7.5)).dir;
+        let difference =
+            square.ray(DVec2::new(30.5, 7.5)).dir - wide.ray(DVec2::new(80.5, 7.5)).dir;
         assert!(difference.length() < 4e-16);
     }
 
     #[test]
     fn cameras_that_see_nothing_are_refused() {
         let camera = |look_at, up, fov| Camera::try_new(DVec3::ZERO, look_at, up, fov).map(|_| ());
-        assert!(matches!(camera(DVec3::ZERO, DVec3::Y, 40.0), Err(CameraError::NoDirection { .. })));
+        assert!(matches!(
+            camera(DVec3::ZERO, DVec3::Y, 40.0),
+            Err(CameraError::NoDirection { .. })
+        ));
         assert!(matches!(camera(DVec3::Y * 3.0, DVec3::Y, 40.0), Err(CameraError::NoUp { .. })));
         assert!(matches!(camera(DVec3::Z, DVec3::ZERO, 40.0), Err(CameraError::NoUp { .. })));
         assert!(matches!(camera(DVec3::Z, DVec3::Y, 180.0), Err(CameraError::FieldOfView { .. })));
-        assert!(matches!(camera(DVec3::Z, DVec3::Y, f64::NAN), Err(CameraError::FieldOfView { .. })));
+        assert!(matches!(
+            camera(DVec3::Z, DVec3::Y, f64::NAN),
+            Err(CameraError::FieldOfView { .. })
+        ));
         assert!(matches!(camera(DVec3::NAN, DVec3::Y, 40.0), Err(CameraError::NotFinite { .. })));
     }
 }

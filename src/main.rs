@@ -1,3 +1,9 @@
-//! The `whitted` command.
+//! The `whitted` command; all of it is in [`cli`].
 
-fn main() {}
+mod cli;
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    cli::run()
+}

@@ -28,6 +28,16 @@ impl Accel {
         self.shapes.is_empty()
     }
 
+    /// The number of nodes of the tree.
+    pub fn node_count(&self) -> usize {
+        0
+    }
+
+    /// The memory of tree and primitives, in bytes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.shapes.as_slice())
+    }
+
     /// The primitive with this number.
     pub fn shape(&self, primitive: u32) -> &Shape {
         &self.shapes[primitive as usize]

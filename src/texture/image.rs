@@ -49,9 +49,15 @@ impl Image {
             .map_err(|source| error(source.into()))?;
         reader.limits(limits);
         let picture = reader.decode().map_err(error)?.into_rgb8();
-        let table: Vec<f32> = (0..=255_u8).map(|byte| srgb_to_linear(f64::from(byte) / 255.0) as f32).collect();
-        let texels = picture.pixels().map(|p| Rgb::from_array(p.0.map(|byte| table[usize::from(byte)])));
-        Ok(Self { width: picture.width() as usize, height: picture.height() as usize, texels: texels.collect() })
+        let table: Vec<f32> =
+            (0..=255_u8).map(|byte| srgb_to_linear(f64::from(byte) / 255.0) as f32).collect();
+        let texels =
+            picture.pixels().map(|p| Rgb::from_array(p.0.map(|byte| table[usize::from(byte)])));
+        Ok(Self {
+            width: picture.width() as usize,
+            height: picture.height() as usize,
+            texels: texels.collect(),
+        })
     }
 
     /// The colour at `uv`, with (0, 0) the lower left corner of the picture and (1, 1) the upper right.
@@ -65,7 +71,8 @@ impl Image {
         let (p, q) = ((x - column) as f32, (y - row) as f32);
         let clamped = |i: f64, count: usize| i.clamp(0.0, (count - 1) as f64) as usize; // NaN is 0
         let (x0, x1) = (clamped(column, self.width), clamped(column + 1.0, self.width));
-        let (y0, y1) = (clamped(row, self.height) * self.width, clamped(row + 1.0, self.height) * self.width);
+        let (y0, y1) =
+            (clamped(row, self.height) * self.width, clamped(row + 1.0, self.height) * self.width);
         let upper = self.texels[y0 + x0].lerp(self.texels[y0 + x1], p);
         let lower = self.texels[y1 + x0].lerp(self.texels[y1 + x1], p);
         upper.lerp(lower, q)
@@ -99,7 +106,11 @@ mod tests {
             (DVec2::new(0.5, 0.5), Rgb::new(0.5, 0.5, 0.5)),
             (DVec2::new(-9.0, 9.0), Rgb::X),
         ] {
-            assert!((image.sample(uv) - color).abs().max_element() < 1e-6, "{uv}: {}", image.sample(uv));
+            assert!(
+                (image.sample(uv) - color).abs().max_element() < 1e-6,
+                "{uv}: {}",
+                image.sample(uv)
+            );
         }
     }
 
@@ -110,7 +121,10 @@ mod tests {
         picture.write_to(&mut Cursor::new(&mut png), ::image::ImageFormat::Png).expect("in memory");
         let color = Image::decode("grey", &png).expect("a PNG").sample(DVec2::splat(0.3));
         // Published values of the sRGB transfer function: 128 -> 0.21586, 10 -> 0.0030353.
-        assert!((color - Rgb::new(0.215_86, 0.003_035_3, 1.0)).abs().max_element() < 1e-5, "{color}");
+        assert!(
+            (color - Rgb::new(0.215_86, 0.003_035_3, 1.0)).abs().max_element() < 1e-5,
+            "{color}"
+        );
         assert!((from_srgb([128.0 / 255.0, 10.0 / 255.0, 1.0]) - color).abs().max_element() < 1e-7);
     }
 

@@ -95,7 +95,8 @@ mod tests {
         for i in -30..30_i32 {
             for j in -30..30_i32 {
                 let p = DVec3::new(f64::from(i) + 0.5, f64::from(j) + 0.25, -118.0);
-                let count = u8::from((i + j - 5).rem_euclid(3) == 0) + u8::from((i - j - 5).rem_euclid(3) == 0);
+                let count = u8::from((i + j - 5).rem_euclid(3) == 0)
+                    + u8::from((i - j - 5).rem_euclid(3) == 0);
                 assert_eq!(plaid.color(p), [A, B, C][usize::from(count)], "{p}"); // sums end in .75 and .25
             }
         }

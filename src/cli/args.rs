@@ -1,0 +1,170 @@
+//! The flags, their help texts, and what their values may be.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand, ValueEnum};
+use whitted::aa::AntiAliasing;
+
+use super::memory;
+
+/// The most threads one may ask for: more than machines have, fewer than they refuse to start.
+const MOST_THREADS: usize = 4096;
+
+/// A Whitted-style recursive ray tracer
+#[derive(Debug, Parser)]
+#[command(name = "whitted", version, subcommand_required = true, arg_required_else_help = true)]
+pub(crate) struct Args {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Render a scene to a picture
+    Render(RenderArgs),
+    /// List the built-in scenes
+    Scenes,
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct RenderArgs {
+    /// Built-in scene to render; `whitted scenes` lists them
+    #[arg(default_value = "assignment")]
+    pub(crate) scene: String,
+
+    /// Picture to write: .png (8-bit sRGB), or - for a PNG on standard output [default: the scene's
+    /// name with .png, in the current folder]
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Width and height in pixels, such as 640x480; at most what 16 GiB of memory hold [default: the
+    /// scene's own]
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    pub(crate) size: Option<[u32; 2]>,
+
+    /// Anti-aliasing: none (one ray per pixel), grid:N (N x N rays per pixel)
+    #[arg(long, value_name = "MODE", default_value_t)]
+    pub(crate) aa: AntiAliasing,
+
+    /// Deepest level of recursion, camera rays being level 1 [default: the scene's own]
+    #[arg(long, value_name = "N", value_parser = parse_depth, allow_negative_numbers = true)]
+    pub(crate) depth: Option<u32>,
+
+    /// Threads to render with, at most 4096 [default: one per core]
+    #[arg(long, value_name = "N", value_parser = parse_threads, allow_negative_numbers = true)]
+    pub(crate) threads: Option<NonZeroUsize>,
+
+    /// Statistics to write as JSON; - is standard output
+    #[arg(long, value_name = "FILE")]
+    pub(crate) stats: Option<PathBuf>,
+
+    /// Progress on standard error
+    #[arg(long, value_name = "MODE", value_enum, default_value_t)]
+    pub(crate) progress: ProgressMode,
+
+    /// Nothing on standard error but errors
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ProgressMode {
+    /// A bar on a terminal, plain lines elsewhere
+    #[default]
+    Auto,
+    /// A bar with the time left, even where there is no terminal
+    Bar,
+    /// A line every 5 seconds
+    Plain,
+    /// JSON objects, one a line, up to ten a second
+    Json,
+    /// No progress
+    None,
+}
+
+fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let shape = || "give width and height in pixels, such as 640x480".to_owned();
+    let (width, height) = text.split_once(['x', 'X']).ok_or_else(shape)?;
+    let side = |digits: &str| -> Result<u32, String> {
+        if digits.is_empty() || !digits.bytes().all(|byte| byte.is_ascii_digit()) {
+            return Err(shape());
+        }
+        // A side that does not fit is too long for the memory as well.
+        Ok(digits.parse().unwrap_or(u32::MAX))
+    };
+    let (width, height) = (side(width)?, side(height)?);
+    if width == 0 || height == 0 {
+        return Err("a picture has at least 1x1 pixels".to_owned());
+    }
+    let bytes = memory::picture_bytes(width, height);
+    if bytes > memory::MOST_BYTES {
+        let more = if width == u32::MAX || height == u32::MAX { "more than " } else { "" };
+        let (needed, most) = (memory::readable(bytes), memory::readable(memory::MOST_BYTES));
+        return Err(format!(
+            "needs {more}{needed} of memory; choose a size that needs at most {most}"
+        ));
+    }
+    Ok([width, height])
+}
+
+fn parse_depth(text: &str) -> Result<u32, String> {
+    match text.parse() {
+        Ok(depth) if depth > 0 => Ok(depth),
+        _ => Err(format!("give a whole number from 1 (camera rays only) to {}", u32::MAX)),
+    }
+}
+
+fn parse_threads(text: &str) -> Result<NonZeroUsize, String> {
+    match text.parse::<NonZeroUsize>() {
+        Ok(threads) if threads.get() <= MOST_THREADS => Ok(threads),
+        _ => Err(format!("give a whole number from 1 to {MOST_THREADS}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn clap_finds_no_fault_with_the_flags() {
+        Args::command().debug_assert();
+    }
+
+    #[test]
+    fn sizes_are_two_positive_whole_numbers() {
+        assert_eq!(parse_size("640x480"), Ok([640, 480]));
+        assert_eq!(parse_size("1X1"), Ok([1, 1]));
+        for text in
+            ["", "x", "640", "640x", "x480", "6e2x4", "-1x2", "+1x2", "1x2x3", "1.5x2", "1 x2"]
+        {
+            assert!(parse_size(text).expect_err(text).ends_with("such as 640x480"), "{text}");
+        }
+        for text in ["0x1", "1x0", "0x99999999999999999999999"] {
+            assert_eq!(parse_size(text), Err("a picture has at least 1x1 pixels".to_owned()));
+        }
+    }
+
+    /// Oracle: 16 bytes of film, 3 of levels, at most 3 of file make 22 a pixel; 2³⁴ / 22 pixels fit.
+    #[test]
+    fn sizes_are_limited_by_the_memory_they_need() {
+        let fit = (1_u64 << 34) / 22;
+        assert!(parse_size(&format!("{fit}x1")).is_ok());
+        assert!(parse_size(&format!("1x{}", fit + 1)).is_err());
+        let error = parse_size("100000x100000").expect_err("too large");
+        assert_eq!(error, "needs 204.9 GiB of memory; choose a size that needs at most 16.0 GiB");
+        let error = parse_size("99999999999999999999x1").expect_err("too large");
+        assert!(error.starts_with("needs more than 88.0 GiB"), "{error}");
+    }
+
+    #[test]
+    fn depth_and_threads_start_at_one() {
+        assert_eq!(parse_depth("1"), Ok(1));
+        assert_eq!(parse_threads("4096").map(NonZeroUsize::get), Ok(4096));
+        for text in ["0", "-1", "two", "", "1.5", "99999999999999999999"] {
+            assert!(parse_depth(text).is_err() && parse_threads(text).is_err(), "{text}");
+        }
+        assert!(parse_threads("4097").is_err());
+    }
+}

@@ -1,0 +1,38 @@
+//! The command line: the only code that prints, exits, or knows clap.
+
+mod args;
+mod failure;
+mod memory;
+mod progress;
+mod render;
+mod scenes;
+mod stats;
+mod streams;
+
+use std::process::ExitCode;
+use std::time::Instant;
+
+use clap::Parser;
+
+use args::{Args, Command};
+use failure::Failure;
+
+/// Runs the command that the program was started with, and says on one line what went wrong.
+pub(crate) fn run() -> ExitCode {
+    let started = Instant::now();
+    let done = match Args::try_parse() {
+        Ok(args) => match &args.command {
+            Command::Render(args) => render::run(args, started),
+            Command::Scenes => scenes::run(),
+        },
+        Err(error) if error.use_stderr() => Err(Failure::from_clap(&error)),
+        Err(help_or_version) => streams::write_stdout(help_or_version.to_string().as_bytes()),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            streams::note(&format!("error: {failure}"));
+            failure.exit_code()
+        }
+    }
+}

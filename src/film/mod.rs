@@ -1,0 +1,143 @@
+//! The film: what a render fills tile by tile, and how it becomes a file.
+//!
+//! [`Film`] holds linear colours; sRGB appears only in [`encode`], at the very end. [`save`] puts a
+//! picture on disk whole or not at all, [`metrics`] measures how far two pictures are apart.
+
+pub mod encode;
+mod error;
+pub mod metrics;
+pub mod save;
+mod tile;
+pub mod whole_file;
+
+pub use error::ImageError;
+pub use metrics::Difference;
+pub use save::OutputFile;
+pub use tile::{Tile, tiles};
+pub use whole_file::{FileError, WholeFile};
+
+use crate::Rgb;
+
+/// A picture in linear light, row by row from the top left, with the camera rays each pixel took.
+///
+/// A pixel holds the average of its camera rays, each clamped to `[0, 1]` before averaging.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    width: u32,
+    height: u32,
+    pixels: Vec<Rgb>,
+    samples: Vec<u32>,
+}
+
+impl Film {
+    /// A black film of `width` x `height` pixels that took no rays yet.
+    ///
+    /// # Panics
+    ///
+    /// If the film needs more memory than the machine can give; [`Film::memory_bytes`] tells first.
+    pub fn new(width: u32, height: u32) -> Self {
+        let count = usize::try_from(u64::from(width) * u64::from(height))
+            .expect("a film that memory can address");
+        Self { width, height, pixels: vec![Rgb::ZERO; count], samples: vec![0; count] }
+    }
+
+    /// Bytes a film of `width` x `height` pixels occupies; cannot overflow.
+    pub fn memory_bytes(width: u32, height: u32) -> u128 {
+        u128::from(width) * u128::from(height) * (size_of::<Rgb>() + size_of::<u32>()) as u128
+    }
+
+    /// Pixels in a row.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Rows of pixels.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// All colours, row by row from the top left, linear.
+    pub fn pixels(&self) -> &[Rgb] {
+        &self.pixels
+    }
+
+    /// Camera rays of each pixel, in the order of [`Film::pixels`].
+    pub fn samples(&self) -> &[u32] {
+        &self.samples
+    }
+
+    /// The colour of the pixel in column `x` and row `y`, both from 0 at the top left.
+    ///
+    /// # Panics
+    ///
+    /// If the pixel lies outside the film.
+    pub fn pixel(&self, x: u32, y: u32) -> Rgb {
+        assert!(x < self.width, "column {x} of a film {} wide", self.width);
+        self.pixels[self.index(x, y)]
+    }
+
+    /// Copies a finished tile into its place; `pixels` and `samples` run row by row over the tile.
+    ///
+    /// # Panics
+    ///
+    /// If the tile sticks out of the film or a slice is not as long as the tile has pixels.
+    pub fn blit(&mut self, tile: &Tile, pixels: &[Rgb], samples: &[u32]) {
+        assert!(tile.x1 <= self.width && tile.y1 <= self.height, "{tile:?} sticks out of the film");
+        let width = tile.width() as usize;
+        let count = width * tile.height() as usize;
+        assert_eq!(pixels.len(), count, "colours of {tile:?}");
+        assert_eq!(samples.len(), count, "samples of {tile:?}");
+        if count == 0 {
+            return;
+        }
+        for (y, (pixels, samples)) in
+            (tile.y0..tile.y1).zip(pixels.chunks_exact(width).zip(samples.chunks_exact(width)))
+        {
+            let start = self.index(tile.x0, y);
+            self.pixels[start..start + width].copy_from_slice(pixels);
+            self.samples[start..start + width].copy_from_slice(samples);
+        }
+    }
+
+    fn index(&self, x: u32, y: u32) -> usize {
+        y as usize * self.width as usize + x as usize
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Oracle: each pixel's colour and count name the pixel, so a misplaced one shows.
+    #[test]
+    fn blitted_tiles_put_every_pixel_in_its_place() {
+        for (width, height, side) in [(1, 1, 8), (7, 5, 2), (33, 20, 8), (5, 64, 64)] {
+            let mut film = Film::new(width, height);
+            for tile in tiles(width, height, side) {
+                let places: Vec<(u32, u32)> = (tile.y0..tile.y1)
+                    .flat_map(|y| (tile.x0..tile.x1).map(move |x| (x, y)))
+                    .collect();
+                let pixels: Vec<Rgb> =
+                    places.iter().map(|&(x, y)| Rgb::new(x as f32, y as f32, 1.0)).collect();
+                let samples: Vec<u32> = places.iter().map(|&(x, y)| 1 + x + 1000 * y).collect();
+                film.blit(&tile, &pixels, &samples);
+            }
+            for y in 0..height {
+                for x in 0..width {
+                    assert_eq!(film.pixel(x, y), Rgb::new(x as f32, y as f32, 1.0));
+                    assert_eq!(film.samples()[(y * width + x) as usize], 1 + x + 1000 * y);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn memory_is_that_of_the_two_buffers() {
+        let film = Film::new(11, 7);
+        let held = size_of_val(film.pixels()) + size_of_val(film.samples());
+        assert_eq!(Film::memory_bytes(11, 7), held as u128);
+        let pixels = u128::from(u32::MAX) * u128::from(u32::MAX);
+        assert_eq!(Film::memory_bytes(u32::MAX, u32::MAX), pixels * 16);
+        assert_eq!(Film::memory_bytes(0, u32::MAX), 0);
+    }
+}

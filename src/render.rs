@@ -1,0 +1,143 @@
+//! From a scene to a film: tiles in parallel, each a function of scene and options alone.
+
+use std::{num::NonZeroUsize, sync::Mutex, time::Instant};
+
+use glam::DVec2;
+use rayon::prelude::*;
+use thiserror::Error;
+
+pub use crate::trace::RayCounts;
+use crate::{
+    aa::AntiAliasing,
+    camera::View,
+    color::Rgb,
+    film::{Film, Tile, tiles},
+    scene::Scene,
+    trace::Tracer,
+};
+
+/// The side of a tile in pixels: small enough to share the work out evenly, large enough to cost nothing by itself.
+const TILE_SIDE: u32 = 16;
+
+/// What the user may choose; the rest is the scene's.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RenderOptions {
+    /// Width and height in pixels, instead of the scene's.
+    pub size: Option<[u32; 2]>,
+    /// How pixels are sampled.
+    pub aa: AntiAliasing,
+    /// The deepest level of recursion, instead of the scene's; camera rays have level 1.
+    pub depth: Option<u32>,
+    /// How many threads work; all cores by default. The picture is the same for any number.
+    pub threads: Option<NonZeroUsize>,
+}
+
+/// How far a render is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// Pixels done.
+    pub done: u64,
+    /// Pixels in all.
+    pub total: u64,
+}
+
+/// A picture, and what it took.
+#[derive(Clone, Debug)]
+pub struct Rendering {
+    /// The picture.
+    pub film: Film,
+    /// The rays cast.
+    pub rays: RayCounts,
+    /// The threads used.
+    pub threads: usize,
+    /// The time, in seconds, without loading and writing.
+    pub seconds: f64,
+    /// The deepest level of recursion that was allowed.
+    pub depth: u32,
+}
+
+/// Why there is no picture.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum RenderError {
+    /// The worker threads could not be started.
+    #[error("{threads} threads cannot be started: {source}")]
+    Threads {
+        /// How many were wanted.
+        threads: usize,
+        /// The system's reason.
+        source: rayon::ThreadPoolBuildError,
+    },
+}
+
+/// Renders `scene`; `progress` is called from the worker threads after every tile.
+///
+/// The picture depends on the scene, size, anti-aliasing and depth alone: it is the same, byte for byte, for any number
+/// of threads.
+///
+/// # Errors
+/// The threads cannot be started.
+pub fn render(
+    scene: &Scene,
+    options: &RenderOptions,
+    progress: &(dyn Fn(Progress) + Sync),
+) -> Result<Rendering, RenderError> {
+    let started = Instant::now();
+    let [width, height] = options.size.unwrap_or(scene.resolution());
+    let depth = options.depth.unwrap_or(scene.depth());
+    let cores = || std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+    let threads = options.threads.map_or_else(cores, NonZeroUsize::get);
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .map_err(|source| RenderError::Threads { threads, source })?;
+
+    let view = scene.camera().view(width, height);
+    let total = u64::from(width) * u64::from(height);
+    let shared = Mutex::new((Film::new(width, height), 0));
+    let rays = pool.install(|| {
+        let finish = |tile: &Tile, pixels: &TilePixels| {
+            let (film, done) = &mut *shared.lock().expect("no worker panics");
+            film.blit(tile, &pixels.colors, &pixels.samples);
+            *done += u64::from(tile.width()) * u64::from(tile.height());
+            progress(Progress { done: *done, total });
+        };
+        tiles(width, height, TILE_SIDE)
+            .into_par_iter()
+            .with_max_len(1)
+            .map_init(
+                || (Tracer::new(scene, depth), TilePixels::default()),
+                |(tracer, pixels), tile| {
+                    let before = tracer.counts();
+                    pixels.render(tracer, &view, &tile, options.aa);
+                    finish(&tile, pixels);
+                    tracer.counts() - before
+                },
+            )
+            .reduce(RayCounts::default, std::ops::Add::add)
+    });
+    let (film, _) = shared.into_inner().expect("no worker panics");
+    Ok(Rendering { film, rays, threads, seconds: started.elapsed().as_secs_f64(), depth })
+}
+
+/// The pixels of one tile, row by row; kept from tile to tile.
+#[derive(Debug, Default)]
+struct TilePixels {
+    colors: Vec<Rgb>,
+    samples: Vec<u32>,
+}
+
+impl TilePixels {
+    fn render(&mut self, tracer: &mut Tracer, view: &View, tile: &Tile, aa: AntiAliasing) {
+        self.colors.clear();
+        self.samples.clear();
+        for y in tile.y0..tile.y1 {
+            for x in tile.x0..tile.x1 {
+                let corner = DVec2::new(f64::from(x), f64::from(y));
+                let pixel = aa.pixel(corner, |place| tracer.radiance(view.ray(place)));
+                self.colors.push(pixel.color);
+                self.samples.push(pixel.samples);
+            }
+        }
+    }
+}

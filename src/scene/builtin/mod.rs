@@ -1,0 +1,68 @@
+//! The scenes inside the program. Their texts and pictures are part of the binary, so they render anywhere.
+
+use super::{Scene, desc::SceneDesc, error::SceneError};
+use crate::texture::Image;
+
+/// A built-in scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Builtin {
+    /// Its name.
+    pub name: &'static str,
+    /// What it shows, in a line.
+    pub description: &'static str,
+    text: &'static str,
+}
+
+const BUILTINS: &[Builtin] = &[Builtin {
+    name: "assignment",
+    description: "mirror, glass, hollow and textured spheres, plaid cylinder and cone, a tetrahedron of six planes",
+    text: include_str!("assignment.toml"),
+}];
+
+const PICTURES: &[(&str, &[u8])] = &[
+    ("cat.png", include_bytes!("../../../textures/cat.png")),
+    ("flower.png", include_bytes!("../../../textures/flower.png")),
+];
+
+/// The built-in scenes.
+pub fn builtins() -> &'static [Builtin] {
+    BUILTINS
+}
+
+impl Builtin {
+    /// The scene's description.
+    ///
+    /// # Errors
+    /// None, unless the program was built with a broken scene.
+    pub fn desc(&self) -> Result<SceneDesc, SceneError> {
+        let syntax =
+            |source| SceneError::Syntax { name: self.name.to_owned(), source: Box::new(source) };
+        toml::from_str(self.text).map_err(syntax)
+    }
+}
+
+/// The built-in scene of this name, ready to trace.
+///
+/// # Errors
+/// No scene has this name.
+pub fn load_builtin(name: &str) -> Result<Scene, SceneError> {
+    let builtin = BUILTINS.iter().find(|builtin| builtin.name == name).ok_or_else(|| {
+        let known = BUILTINS.iter().map(|builtin| builtin.name).collect::<Vec<_>>().join(", ");
+        SceneError::UnknownScene { name: name.to_owned(), known }
+    })?;
+    Scene::try_new(builtin.name, &builtin.desc()?, &mut picture)
+}
+
+/// One of the program's own pictures.
+///
+/// # Errors
+/// None has this name.
+pub fn picture(name: &str) -> Result<Image, SceneError> {
+    match PICTURES.iter().find(|(known, _)| *known == name) {
+        Some((_, bytes)) => Ok(Image::decode(name, bytes)?),
+        None => {
+            let known = PICTURES.iter().map(|(known, _)| *known).collect::<Vec<_>>().join(", ");
+            Err(SceneError::UnknownImage { name: name.to_owned(), known })
+        }
+    }
+}

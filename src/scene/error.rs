@@ -1,0 +1,95 @@
+//! What can be wrong with a scene.
+
+use thiserror::Error;
+
+use crate::{camera::CameraError, geometry::ShapeError, texture::ImageTextureError};
+
+/// Why there is no scene to render.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum SceneError {
+    /// No built-in scene has this name.
+    #[error("unknown scene `{name}` (known: {known})")]
+    UnknownScene {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: String,
+    },
+    /// The text is not that of a scene.
+    #[error("{name}: {source}")]
+    Syntax {
+        /// The scene.
+        name: String,
+        /// What is wrong, with line and column.
+        source: Box<toml::de::Error>,
+    },
+    /// An object uses a material that is not defined.
+    #[error("object {object} uses material `{material}`, which is not defined (known: {known})")]
+    UnknownMaterial {
+        /// The object, counted from 1.
+        object: usize,
+        /// The material.
+        material: String,
+        /// The materials that are defined.
+        known: String,
+    },
+    /// A material uses a texture that is not defined.
+    #[error(
+        "material `{material}` uses texture `{texture}`, which is not defined (known: {known})"
+    )]
+    UnknownTexture {
+        /// The material.
+        material: String,
+        /// The texture.
+        texture: String,
+        /// The textures that are defined.
+        known: String,
+    },
+    /// An object with a picture on it has no surface coordinates.
+    #[error(
+        "object {object} wears material `{material}`, a picture, but only a sphere or quad has surface coordinates"
+    )]
+    NoSurfaceCoordinates {
+        /// The object, counted from 1.
+        object: usize,
+        /// The material.
+        material: String,
+    },
+    /// A shape cannot be made.
+    #[error("object {object} ({kind}): {source}")]
+    Shape {
+        /// The object, counted from 1.
+        object: usize,
+        /// The kind of shape.
+        kind: &'static str,
+        /// What is wrong with it.
+        source: ShapeError,
+    },
+    /// A number is out of its range.
+    #[error("{place}: `{name}` is {value}, but must be {range}")]
+    Value {
+        /// The part of the scene.
+        place: String,
+        /// The parameter.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it may be.
+        range: &'static str,
+    },
+    /// The camera sees nothing.
+    #[error(transparent)]
+    Camera(#[from] CameraError),
+    /// A texture's picture cannot be read.
+    #[error(transparent)]
+    Image(#[from] ImageTextureError),
+    /// A texture's picture is not there.
+    #[error("texture `{name}` is not one of the program's own pictures (known: {known})")]
+    UnknownImage {
+        /// The picture.
+        name: String,
+        /// The pictures there are.
+        known: String,
+    },
+}
