@@ -1,6 +1,13 @@
 //! From a scene to a film: tiles in parallel, each a function of scene and options alone.
 
-use std::{num::NonZeroUsize, sync::Mutex, time::Instant};
+use std::{
+    num::NonZeroUsize,
+    sync::{
+        Mutex, PoisonError,
+        atomic::{AtomicU64, Ordering},
+    },
+    time::Instant,
+};
 
 use glam::DVec2;
 use rayon::prelude::*;
@@ -94,14 +101,16 @@ pub fn render(
 
     let view = scene.camera().view(width, height);
     let total = u64::from(width) * u64::from(height);
-    let shared = Mutex::new((Film::new(width, height), 0));
+    let film = Mutex::new(Film::new(width, height));
+    let done = AtomicU64::new(0);
+    let finish = |tile: &Tile, pixels: &TilePixels| {
+        let mut film = film.lock().unwrap_or_else(PoisonError::into_inner);
+        film.blit(tile, &pixels.colors, &pixels.samples);
+        let count = u64::from(tile.width()) * u64::from(tile.height());
+        // Still under the lock, so that progress never goes backwards.
+        progress(Progress { done: done.fetch_add(count, Ordering::Relaxed) + count, total });
+    };
     let rays = pool.install(|| {
-        let finish = |tile: &Tile, pixels: &TilePixels| {
-            let (film, done) = &mut *shared.lock().expect("no worker panics");
-            film.blit(tile, &pixels.colors, &pixels.samples);
-            *done += u64::from(tile.width()) * u64::from(tile.height());
-            progress(Progress { done: *done, total });
-        };
         tiles(width, height, TILE_SIDE)
             .into_par_iter()
             .with_max_len(1)
@@ -116,7 +125,7 @@ pub fn render(
             )
             .reduce(RayCounts::default, std::ops::Add::add)
     });
-    let (film, _) = shared.into_inner().expect("no worker panics");
+    let film = film.into_inner().unwrap_or_else(PoisonError::into_inner);
     Ok(Rendering { film, rays, threads, seconds: started.elapsed().as_secs_f64(), depth })
 }
 

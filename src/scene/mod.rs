@@ -86,7 +86,9 @@ impl Scene {
 
         let bounds = shapes.iter().fold(Bounds::EMPTY, |b, s| b.union(s.bounds()));
         let mut points = Vec::new();
-        shapes.iter().for_each(|shape| shape.for_each_point(|p| points.push(p)));
+        for shape in &shapes {
+            shape.for_each_point(|p| points.push(p));
+        }
         let map = Similarity::normalizing(&bounds, points.into_iter());
         let shapes = shapes.iter().map(|shape| shape.mapped(&map)).collect();
         let building = Instant::now();

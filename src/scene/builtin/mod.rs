@@ -58,11 +58,9 @@ pub fn load_builtin(name: &str) -> Result<Scene, SceneError> {
 /// # Errors
 /// None has this name.
 pub fn picture(name: &str) -> Result<Image, SceneError> {
-    match PICTURES.iter().find(|(known, _)| *known == name) {
-        Some((_, bytes)) => Ok(Image::decode(name, bytes)?),
-        None => {
-            let known = PICTURES.iter().map(|(known, _)| *known).collect::<Vec<_>>().join(", ");
-            Err(SceneError::UnknownImage { name: name.to_owned(), known })
-        }
-    }
+    let Some((_, bytes)) = PICTURES.iter().find(|(known, _)| *known == name) else {
+        let known = PICTURES.iter().map(|(known, _)| *known).collect::<Vec<_>>().join(", ");
+        return Err(SceneError::UnknownImage { name: name.to_owned(), known });
+    };
+    Ok(Image::decode(name, bytes)?)
 }
