@@ -1,0 +1,6 @@
+//! Tests of the whole library against answers that it did not compute.
+
+mod determinism;
+mod objects;
+mod references;
+mod support;
