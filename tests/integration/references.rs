@@ -17,11 +17,12 @@ fn assignment(aa: AntiAliasing) -> Rendering {
     rendering(&scene, &RenderOptions { aa, ..Default::default() })
 }
 
-fn difference(rendering: &Rendering, reference: &str) -> Difference {
+/// `path` is that of the other picture in the repository.
+fn difference(rendering: &Rendering, path: &str) -> Difference {
     let film = &rendering.film;
     let ours = RgbImage::from_raw(film.width(), film.height(), to_srgb8(film))
         .expect("three bytes a pixel");
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/references").join(reference);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
     Difference::between(&ours, &read_png_rgb8(path).expect("a reference picture"))
         .expect("equal sizes")
 }
@@ -43,7 +44,7 @@ fn assert_counts(rays: &RayCounts, [traced, shadow]: [u64; 2]) {
 #[test]
 fn one_ray_per_pixel() {
     let rendering = assignment(AntiAliasing::None);
-    let difference = difference(&rendering, "assignment-1-ray.png");
+    let difference = difference(&rendering, "tests/references/assignment-1-ray.png");
     assert!(difference.rmse <= 1.5, "{difference:?}");
     assert!(difference.mean <= 0.1, "{difference:?}");
     assert!(difference.share_over_8 <= 0.005, "{difference:?}");
@@ -51,12 +52,15 @@ fn one_ray_per_pixel() {
     assert_eq!(rendering.rays.camera_hit, 360_000); // floor and wall fill the picture
 }
 
-/// Oracle: POV-Ray's picture.
+/// Oracle: POV-Ray's picture. And the README shows what the program makes: `whitted render --aa grid:4 -o
+/// docs/pictures/assignment.png` makes its picture again.
 #[test]
 fn sixteen_rays_per_pixel() {
-    let difference =
-        difference(&assignment(AntiAliasing::Grid { side: 4 }), "assignment-4x4-rays.png");
-    assert!(difference.rmse <= 1.5, "{difference:?}");
+    let rendering = assignment(AntiAliasing::Grid { side: 4 });
+    let to_reference = difference(&rendering, "tests/references/assignment-4x4-rays.png");
+    assert!(to_reference.rmse <= 1.5, "{to_reference:?}");
+    let to_shown = difference(&rendering, "docs/pictures/assignment.png");
+    assert!(to_shown.worst.levels <= 1, "{to_shown:?}");
 }
 
 /// Oracle: the counts on which two other programs agree.
