@@ -1,21 +1,71 @@
 //! Which primitive does a ray meet first, and which does it cross on its way to a light?
+//!
+//! Candidates are found in single precision, by a tree of boxes that are a little too large (`frame`, `walk`); what is
+//! hit is decided by the shapes themselves in double precision, so that every answer is, to the bit, the one of
+//! [`brute`], whatever the machine's instructions.
 
 pub mod brute;
+mod build;
+mod collapse;
+mod extreme;
+mod frame;
+mod node;
+mod query;
+mod simd;
+#[cfg(target_arch = "x86_64")]
+mod simd_x86;
+#[cfg(test)]
+mod tests;
+mod tree;
+mod walk;
 
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 
 use crate::geometry::{Bounds, Crossing, Hit, Ray, Shape};
+use build::Division;
+use query::{Crossed, Nearest};
+pub use simd::Isa;
+use simd::dispatch;
+use tree::Tree;
 
 /// The primitives of a scene, arranged so that a ray finds those it meets without trying all.
 #[derive(Debug)]
 pub struct Accel {
+    tree: Option<Tree>,
+    /// The primitives: those of the tree in the order of its leaves, then those outside it.
     shapes: Vec<Shape>,
+    /// The number of the primitive in each place, and the place of each.
+    numbers: Vec<u32>,
+    places: Vec<u32>,
+    /// How many are in the tree.
+    inside: usize,
+    bounds: Bounds,
+    isa: Isa,
 }
 
 impl Accel {
     /// Arranges `shapes`; a primitive's number is its place in them.
     pub fn build(shapes: Vec<Shape>) -> Self {
-        Self { shapes }
+        Self::with_isa(shapes, Isa::detect())
+    }
+
+    /// As [`Accel::build`], with queries by the instructions of `isa`, or the portable ones where the machine lacks them.
+    pub fn with_isa(shapes: Vec<Shape>, isa: Isa) -> Self {
+        let bounds = shapes.iter().fold(Bounds::EMPTY, |b, s| b.union(s.bounds()));
+        let division = Division::of(&shapes);
+        let (tree, mut numbers) = match Tree::build(&shapes, &division) {
+            Some((tree, order)) => (Some(tree), order),
+            None => (None, Vec::new()),
+        };
+        let inside = numbers.len();
+        numbers.extend(&division.outside);
+        let mut places = vec![0; numbers.len()];
+        for (place, number) in (0..).zip(&numbers) {
+            places[*number as usize] = place;
+        }
+        let shapes = in_order(shapes, &numbers);
+        let isa = if isa.is_available() { isa } else { Isa::Portable };
+        Self { tree, shapes, numbers, places, inside, bounds, isa }
     }
 
     /// The number of primitives.
@@ -40,17 +90,22 @@ impl Accel {
 
     /// The primitive with this number.
     pub fn shape(&self, primitive: u32) -> &Shape {
-        &self.shapes[primitive as usize]
+        &self.shapes[self.places[primitive as usize] as usize]
     }
 
     /// The smallest box about all primitives.
     pub fn bounds(&self) -> Bounds {
-        self.shapes.iter().fold(Bounds::EMPTY, |b, s| b.union(s.bounds()))
+        self.bounds
+    }
+
+    /// The instructions that queries use.
+    pub fn isa(&self) -> Isa {
+        self.isa
     }
 
     /// The nearest hit with `0 < t < end`; of equal ones, that of the lowest primitive.
     pub fn nearest(&self, ray: &Ray, end: f64) -> Option<Hit> {
-        brute::nearest(&self.shapes, ray, end)
+        dispatch(self.isa, Nearest { accel: self, ray, end })
     }
 
     /// Calls `visit(primitive, crossing)` for every crossing with `0 < t < end`, in no order, until it breaks.
@@ -62,6 +117,18 @@ impl Accel {
         end: f64,
         visit: impl FnMut(u32, Crossing) -> ControlFlow<()>,
     ) -> bool {
-        brute::any_crossing(&self.shapes, ray, end, visit)
+        dispatch(self.isa, Crossed { accel: self, ray, end, visit })
     }
+
+    /// The places of the primitives that are not in the tree.
+    #[inline(always)]
+    fn outside(&self) -> Range<usize> {
+        self.inside..self.shapes.len()
+    }
+}
+
+/// The `shapes` in the order of `numbers`, which name each once.
+fn in_order(shapes: Vec<Shape>, numbers: &[u32]) -> Vec<Shape> {
+    let mut shapes: Vec<Option<Shape>> = shapes.into_iter().map(Some).collect();
+    numbers.iter().filter_map(|k| shapes[*k as usize].take()).collect()
 }
