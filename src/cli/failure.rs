@@ -57,7 +57,9 @@ impl<E: Into<anyhow::Error>> From<E> for Failure {
         let error = error.into();
         let exit = match (error.downcast_ref::<ImageError>(), error.downcast_ref::<SceneError>()) {
             (Some(ImageError::UnknownExtension { .. }), _)
-            | (_, Some(SceneError::UnknownScene { .. })) => Exit::Usage,
+            | (_, Some(SceneError::UnknownScene { .. } | SceneError::NotGenerated { .. })) => {
+                Exit::Usage
+            }
             (_, Some(_)) => Exit::Scene,
             _ => Exit::Failed,
         };

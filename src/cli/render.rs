@@ -7,7 +7,7 @@ use std::time::Instant;
 use anyhow::{Context, anyhow};
 use whitted::film::{FileError, Film, OutputFile, WholeFile, encode};
 use whitted::render::{RenderOptions, Rendering};
-use whitted::scene::{Scene, load_builtin};
+use whitted::scene::{Scene, load_builtin_of};
 
 use super::args::{ProgressMode, RenderArgs};
 use super::failure::Failure;
@@ -18,7 +18,7 @@ use super::{memory, streams};
 /// Renders as `args` say; `started` is when the program did.
 pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
     let loading = Instant::now();
-    let scene = load_builtin(&args.scene)?;
+    let scene = load_builtin_of(&args.scene, args.objects)?;
     let build = scene.bvh_stats().build_seconds;
     let load = (loading.elapsed().as_secs_f64() - build).max(0.0);
 

@@ -7,12 +7,13 @@
 pub mod builtin;
 pub mod desc;
 pub mod error;
+pub mod generators;
 pub mod load;
 
 use std::{ops::ControlFlow, time::Instant};
 
 pub use self::{
-    builtin::{Builtin, builtins, load_builtin},
+    builtin::{Builtin, builtins, load_builtin, load_builtin_of},
     desc::SceneDesc,
     error::SceneError,
 };
@@ -64,6 +65,12 @@ impl Scene {
         desc: &SceneDesc,
         images: &mut ImageSource,
     ) -> Result<Self, SceneError> {
+        let parts = Parts::try_new(desc, images)?;
+        Self::assemble(name, desc, parts)
+    }
+
+    /// The scene of `parts`; resolution, depth and camera are those of the description.
+    fn assemble(name: &str, desc: &SceneDesc, parts: Parts) -> Result<Self, SceneError> {
         for (parameter, value) in
             [("resolution", desc.resolution[0].min(desc.resolution[1])), ("depth", desc.depth)]
         {
@@ -81,8 +88,7 @@ impl Scene {
         let [eye, look_at, up] =
             [desc_camera.eye, desc_camera.look_at, desc_camera.up].map(glam::DVec3::from_array);
         let camera = Camera::try_new(eye, look_at, up, desc_camera.vertical_fov)?;
-        let Parts { shapes, material_of, materials, lights, background } =
-            Parts::try_new(desc, images)?;
+        let Parts { shapes, material_of, materials, lights, background } = parts;
 
         let bounds = shapes.iter().fold(Bounds::EMPTY, |b, s| b.union(s.bounds()));
         let mut points = Vec::new();
