@@ -21,6 +21,8 @@ mod walk;
 
 use std::ops::{ControlFlow, Range};
 
+use glam::DVec3;
+
 use crate::geometry::{Bounds, Crossing, Hit, Ray, Shape};
 use build::Division;
 use query::{Crossed, Nearest};
@@ -80,12 +82,14 @@ impl Accel {
 
     /// The number of nodes of the tree.
     pub fn node_count(&self) -> usize {
-        0
+        self.tree.as_ref().map_or(0, |tree| tree.nodes.len())
     }
 
     /// The memory of tree and primitives, in bytes.
     pub fn bytes(&self) -> usize {
-        size_of_val(self.shapes.as_slice())
+        let nodes = self.tree.as_ref().map_or(0, |tree| size_of_val(tree.nodes.as_slice()));
+        let numbers = size_of_val(self.numbers.as_slice()) + size_of_val(self.places.as_slice());
+        nodes + numbers + size_of_val(self.shapes.as_slice())
     }
 
     /// The primitive with this number.
@@ -106,6 +110,26 @@ impl Accel {
     /// The nearest hit with `0 < t < end`; of equal ones, that of the lowest primitive.
     pub fn nearest(&self, ray: &Ray, end: f64) -> Option<Hit> {
         dispatch(self.isa, Nearest { accel: self, ray, end })
+    }
+
+    /// The nearest hits of up to 64 rays of one origin, as [`Accel::nearest`] without an end finds them.
+    pub fn nearest_packet(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = self.nearest(ray, f64::INFINITY);
+        }
+    }
+
+    /// Calls `visit(index, primitive, crossing)` for every crossing of each of up to 64 rays before its end at `t = 1`, which is
+    /// `target` for all of them, in no order; a ray whose visit breaks is done.
+    pub fn any_crossing_packet(
+        &self,
+        rays: &[Ray],
+        _target: DVec3,
+        mut visit: impl FnMut(u32, u32, Crossing) -> ControlFlow<()>,
+    ) {
+        for (ray, index) in rays.iter().zip(0..) {
+            self.any_crossing(ray, 1.0, |primitive, crossing| visit(index, primitive, crossing));
+        }
     }
 
     /// Calls `visit(primitive, crossing)` for every crossing with `0 < t < end`, in no order, until it breaks.
