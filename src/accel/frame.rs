@@ -96,6 +96,11 @@ impl Frame {
         self.pad
     }
 
+    /// How many times as much as usual that is.
+    pub(super) fn coarseness(&self) -> f64 {
+        self.pad / BOX_PAD
+    }
+
     /// The ray in this frame.
     #[inline(always)]
     pub(super) fn enter(&self, ray: &Ray) -> Entry {

@@ -7,8 +7,10 @@
 pub mod brute;
 mod build;
 mod collapse;
+mod crossed;
 mod extreme;
 mod frame;
+mod leaf;
 mod node;
 mod query;
 mod simd;
@@ -25,7 +27,8 @@ use glam::DVec3;
 
 use crate::geometry::{Bounds, Crossing, Hit, Ray, Shape};
 use build::Division;
-use query::{Crossed, Nearest};
+use crossed::Crossed;
+use query::Nearest;
 pub use simd::Isa;
 use simd::dispatch;
 use tree::Tree;
@@ -141,7 +144,26 @@ impl Accel {
         end: f64,
         visit: impl FnMut(u32, Crossing) -> ControlFlow<()>,
     ) -> bool {
-        dispatch(self.isa, Crossed { accel: self, ray, end, visit })
+        self.is_blocked(ray, end, |_| false, visit)
+    }
+
+    /// Whether a primitive that is `opaque` is crossed with `0 < t < end`, or `visit(primitive, crossing)` breaks, which is
+    /// called for crossings of the others, in no order, until the answer is known.
+    pub fn is_blocked(
+        &self,
+        ray: &Ray,
+        end: f64,
+        opaque: impl Fn(u32) -> bool,
+        visit: impl FnMut(u32, Crossing) -> ControlFlow<()>,
+    ) -> bool {
+        dispatch(self.isa, Crossed { accel: self, ray, end, opaque, visit })
+    }
+
+    /// The place of the primitive that `ray` leaves, if it does.
+    #[inline(always)]
+    fn place_left(&self, ray: &Ray) -> u32 {
+        let number = ray.from.map_or(usize::MAX, |from| from.primitive as usize);
+        self.places.get(number).copied().unwrap_or(u32::MAX)
     }
 
     /// The places of the primitives that are not in the tree.

@@ -1,21 +1,21 @@
-//! What a ray asks of the tree: the nearest hit, or all crossings.
-
-use std::ops::ControlFlow;
+//! What a ray asks of the tree: the nearest hit.
 
 use super::{
     Accel, extreme,
     frame::{Entry, TreeRay},
+    leaf::{Candidates, LeafRay},
     node::Content,
     simd::{Kernel, Simd},
+    tree::Tree,
     walk::{Visitor, walk},
 };
 use crate::geometry::{Crossing, Hit, Ray};
 
 /// The best hit so far, decided in double precision.
 #[derive(Clone, Copy, Debug)]
-struct Best {
+pub(super) struct Best {
     /// Its parameter, or the end of the ray.
-    t: f64,
+    pub(super) t: f64,
     /// Its primitive; before there is a hit 0, which nothing undercuts.
     primitive: u32,
     face: u8,
@@ -24,16 +24,30 @@ struct Best {
 
 impl Best {
     #[inline(always)]
-    fn offer(&mut self, crossing: Crossing, primitive: u32) -> bool {
-        let t = crossing.t;
-        let wins = t > 0.0 && (t < self.t || t == self.t && primitive < self.primitive);
-        if wins {
-            *self = Self { t, primitive, face: crossing.face, is_hit: true };
-        }
-        wins
+    pub(super) fn before(end: f64) -> Self {
+        Self { t: end, primitive: 0, face: 0, is_hit: false }
     }
 
-    fn hit(&self) -> Option<Hit> {
+    /// Takes the crossing if it is better: nearer, or as near and of a lower primitive.
+    #[inline(always)]
+    fn offer(&mut self, crossing: Crossing, primitive: u32) {
+        let t = crossing.t;
+        if t > 0.0 && (t < self.t || t == self.t && primitive < self.primitive) {
+            *self = Self { t, primitive, face: crossing.face, is_hit: true };
+        }
+    }
+
+    /// Offers the crossings of the primitive in `place`.
+    #[inline(always)]
+    pub(super) fn test(&mut self, accel: &Accel, ray: &Ray, place: usize) {
+        let number = accel.numbers[place];
+        let [first, second] = accel.shapes[place].crossings_of(ray, number);
+        self.offer(first, number);
+        self.offer(second, number);
+    }
+
+    #[inline(always)]
+    pub(super) fn hit(&self) -> Option<Hit> {
         let Self { t, primitive, face, is_hit } = *self;
         is_hit.then_some(Hit { t, primitive, face })
     }
@@ -52,150 +66,137 @@ impl Kernel for Nearest<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Option<Hit> {
         let Self { accel, ray, end } = self;
-        let best = Best { t: end, primitive: 0, face: 0, is_hit: false };
-        let mut search = NearestSearch { accel, ray, tree_ray: None, limit: 0.0, best };
+        let mut best = Best::before(end);
         for place in accel.outside() {
-            search.test(place);
+            best.test(accel, ray, place);
         }
         if let Some(tree) = &accel.tree {
             match tree.frame.enter(ray) {
                 Entry::Miss => {}
                 Entry::Ray(tree_ray) => {
-                    search.tree_ray = Some(tree_ray);
-                    search.limit = tree_ray.end_above(search.best.t);
+                    let mut search = Search::new(simd, accel, tree, ray, tree_ray, best);
                     walk::<S, true>(simd, &tree.nodes, tree.root, &tree_ray, &mut search);
+                    best = search.finish();
                 }
                 Entry::Extreme => {
                     let origin = tree.frame.point(ray.origin);
                     extreme::walk(&tree.nodes, tree.root, ray, origin, |leaf| {
-                        tree.places(leaf).for_each(|place| search.test(place));
+                        tree.places(leaf).for_each(|place| best.test(accel, ray, place));
                         false
                     });
                 }
             }
         }
-        search.best.hit()
+        best.hit()
     }
 }
 
-struct NearestSearch<'a> {
+/// A certain hit that has not been decided in double precision, because it may never matter.
+#[derive(Clone, Copy)]
+struct Pending {
+    place: u32,
+    /// Its parameter in the tree's frame is not less than this.
+    from: f32,
+}
+
+impl Pending {
+    const NONE: Self = Self { place: u32::MAX, from: f32::INFINITY };
+}
+
+struct Search<'a, S: Simd> {
     accel: &'a Accel,
+    tree: &'a Tree,
     ray: &'a Ray,
-    tree_ray: Option<TreeRay>,
+    tree_ray: TreeRay,
+    leaf_ray: LeafRay<S>,
+    /// The place of the primitive that the ray leaves, whose own test alone knows what that means.
+    left: u32,
+    /// No hit beyond this parameter, in the tree's frame, can be the nearest.
     limit: f32,
     best: Best,
+    pending: Pending,
 }
 
-impl NearestSearch<'_> {
+impl<'a, S: Simd> Search<'a, S> {
     #[inline(always)]
-    fn test(&mut self, place: usize) {
-        let number = self.accel.numbers[place];
-        for crossing in self.accel.shapes[place].crossings_of(self.ray, number) {
-            if self.best.offer(crossing, number)
-                && let Some(ray) = &self.tree_ray
-            {
-                self.limit = ray.end_above(self.best.t);
-            }
-        }
-    }
-}
-
-impl<S: Simd> Visitor<S> for NearestSearch<'_> {
-    #[inline(always)]
-    fn limit(&self) -> f32 {
-        self.limit
+    fn new(
+        simd: S,
+        accel: &'a Accel,
+        tree: &'a Tree,
+        ray: &'a Ray,
+        tree_ray: TreeRay,
+        best: Best,
+    ) -> Self {
+        let leaf_ray = LeafRay::new(simd, &tree_ray, best.t);
+        let limit = tree_ray.end_above(best.t);
+        let left = accel.place_left(ray);
+        let pending = Pending::NONE;
+        Self { accel, tree, ray, tree_ray, leaf_ray, left, limit, best, pending }
     }
 
+    /// Decides the primitive in `place`.
     #[inline(always)]
-    fn leaf(&mut self, _simd: S, leaf: Content) -> bool {
-        if let Some(tree) = &self.accel.tree {
-            for place in tree.places(leaf) {
+    fn test(&mut self, place: u32) {
+        self.best.test(self.accel, self.ray, place as usize);
+        self.limit = self.limit.min(self.tree_ray.end_above(self.best.t));
+    }
+
+    /// Takes the candidates of a leaf.
+    ///
+    /// A pending hit loses to one that ends before it starts; where intervals overlap, both are decided.
+    #[inline(always)]
+    fn take(&mut self, first: u32, candidates: &Candidates) {
+        let Candidates { mut maybe, certain, from, to } = *candidates;
+        while maybe != 0 {
+            let lane = maybe.trailing_zeros() & 7;
+            maybe &= maybe - 1;
+            let place = first + lane;
+            if certain & 1 << lane == 0 || place == self.left {
                 self.test(place);
+                continue;
             }
+            let (from, to) = (from.0[lane as usize], to.0[lane as usize]);
+            if from > self.limit {
+                continue;
+            }
+            if to >= self.pending.from && self.pending.place != u32::MAX {
+                self.test(self.pending.place);
+            }
+            self.pending = Pending { place, from };
+            self.limit = self.limit.min(to);
         }
-        false
     }
-}
-
-/// The visit of all crossings.
-pub(super) struct Crossed<'a, V> {
-    pub(super) accel: &'a Accel,
-    pub(super) ray: &'a Ray,
-    pub(super) end: f64,
-    pub(super) visit: V,
-}
-
-impl<V: FnMut(u32, Crossing) -> ControlFlow<()>> Kernel for Crossed<'_, V> {
-    type Output = bool;
 
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) -> bool {
-        let Self { accel, ray, end, visit } = self;
-        let mut search = CrossedSearch { accel, ray, end, limit: 0.0, visit, stopped: false };
-        for place in accel.outside() {
-            if search.test(place) {
-                return true;
-            }
+    fn finish(mut self) -> Best {
+        if self.pending.place != u32::MAX && self.pending.from <= self.limit {
+            self.test(self.pending.place);
         }
-        if let Some(tree) = &accel.tree {
-            match tree.frame.enter(ray) {
-                Entry::Miss => {}
-                Entry::Ray(tree_ray) => {
-                    search.limit = tree_ray.end_above(end);
-                    walk::<S, false>(simd, &tree.nodes, tree.root, &tree_ray, &mut search);
-                }
-                Entry::Extreme => {
-                    let origin = tree.frame.point(ray.origin);
-                    extreme::walk(&tree.nodes, tree.root, ray, origin, |leaf| {
-                        tree.places(leaf).any(|place| search.test(place))
-                    });
-                }
-            }
-        }
-        search.stopped
+        self.best
     }
 }
 
-struct CrossedSearch<'a, V> {
-    accel: &'a Accel,
-    ray: &'a Ray,
-    end: f64,
-    limit: f32,
-    visit: V,
-    stopped: bool,
-}
-
-impl<V: FnMut(u32, Crossing) -> ControlFlow<()>> CrossedSearch<'_, V> {
-    #[inline(always)]
-    fn test(&mut self, place: usize) -> bool {
-        let number = self.accel.numbers[place];
-        for crossing in self.accel.shapes[place].crossings_of(self.ray, number) {
-            if crossing.t > 0.0
-                && crossing.t < self.end
-                && (self.visit)(number, crossing).is_break()
-            {
-                self.stopped = true;
-                return true;
-            }
-        }
-        false
-    }
-}
-
-impl<S: Simd, V: FnMut(u32, Crossing) -> ControlFlow<()>> Visitor<S> for CrossedSearch<'_, V> {
+impl<S: Simd> Visitor<S> for Search<'_, S> {
     #[inline(always)]
     fn limit(&self) -> f32 {
         self.limit
     }
 
     #[inline(always)]
-    fn leaf(&mut self, _simd: S, leaf: Content) -> bool {
-        if let Some(tree) = &self.accel.tree {
-            for place in tree.places(leaf) {
-                if self.test(place) {
-                    return true;
-                }
+    fn leaf(&mut self, simd: S, leaf: Content) -> bool {
+        match leaf {
+            Content::Spheres(k) => {
+                let block = &self.tree.spheres[k];
+                let candidates = block.sort_out(simd, &self.leaf_ray, self.limit);
+                self.take(block.first, &candidates);
             }
+            Content::Triangles(k) => {
+                let block = &self.tree.triangles[k];
+                let candidates = block.sort_out(simd, &self.leaf_ray, self.limit);
+                self.take(block.first, &candidates);
+            }
+            Content::One(place) => self.test(place as u32),
+            Content::Node(_) => {}
         }
         false
     }

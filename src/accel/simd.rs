@@ -82,9 +82,13 @@ pub(super) trait Simd: Copy {
     fn mul_sub(self, a: Self::F, b: Self::F, c: Self::F) -> Self::F;
     /// `c − a b`, rounded once or twice.
     fn neg_mul_add(self, a: Self::F, b: Self::F, c: Self::F) -> Self::F;
+    /// The smaller, or `b` where either is NaN.
     fn min(self, a: Self::F, b: Self::F) -> Self::F;
+    /// The larger, or `b` where either is NaN.
     fn max(self, a: Self::F, b: Self::F) -> Self::F;
     fn sqrt(self, a: Self::F) -> Self::F;
+    /// `a`, with the other sign where that of `b` is negative.
+    fn toggle_sign(self, a: Self::F, b: Self::F) -> Self::F;
     /// A bit for each lane in which `a ≤ b`; none where either is NaN.
     fn le(self, a: Self::F, b: Self::F) -> u32;
 }
@@ -171,6 +175,11 @@ impl Simd for Portable {
     #[inline(always)]
     fn sqrt(self, a: Lanes) -> Lanes {
         Lanes(a.0.map(f32::sqrt))
+    }
+
+    #[inline(always)]
+    fn toggle_sign(self, a: Lanes, b: Lanes) -> Lanes {
+        Self::zip(a, b, |a, b| f32::from_bits(a.to_bits() ^ (b.to_bits() & 1 << 31)))
     }
 
     #[inline(always)]

@@ -2,10 +2,13 @@
 
 use std::ops::Range;
 
+use rayon::prelude::*;
+
 use super::{
     build::{self, Division},
     collapse::{Kind, Run, collapse},
     frame::Frame,
+    leaf::{Spheres, Triangles},
     node::{Child, Content, Node},
     walk::MAX_DEPTH,
 };
@@ -17,8 +20,8 @@ pub(super) struct Tree {
     pub(super) frame: Frame,
     pub(super) root: Child,
     pub(super) nodes: Vec<Node>,
-    spheres: Vec<Run>,
-    triangles: Vec<Run>,
+    pub(super) spheres: Vec<Spheres>,
+    pub(super) triangles: Vec<Triangles>,
 }
 
 impl Tree {
@@ -36,26 +39,63 @@ impl Tree {
         if wide.depth > MAX_DEPTH {
             wide = collapse(&build::balanced(&boxes), kind);
         }
-        let order = wide.order.iter().map(|k| inside[*k as usize]).collect();
+        drop(boxes);
+        let order: Vec<u32> = wide.order.iter().map(|k| inside[*k as usize]).collect();
+        let leaves = Leaves { shapes, order: &order, frame: &frame };
         let tree = Self {
             frame,
             root: wide.root,
             nodes: wide.nodes,
-            spheres: wide.sphere_runs,
-            triangles: wide.triangle_runs,
+            spheres: wide.sphere_runs.par_iter().map(|run| leaves.spheres(*run)).collect(),
+            triangles: wide.triangle_runs.par_iter().map(|run| leaves.triangles(*run)).collect(),
         };
         Some((tree, order))
     }
 
     /// The places of a leaf's primitives.
-    #[inline(always)]
     pub(super) fn places(&self, leaf: Content) -> Range<usize> {
-        let run = match leaf {
-            Content::Node(_) => Run { first: 0, count: 0 },
-            Content::Spheres(k) => self.spheres[k],
-            Content::Triangles(k) => self.triangles[k],
-            Content::One(k) => Run { first: k as u32, count: 1 },
+        let (first, count) = match leaf {
+            Content::Node(_) => (0, 0),
+            Content::Spheres(k) => (self.spheres[k].first, self.spheres[k].count),
+            Content::Triangles(k) => (self.triangles[k].first, self.triangles[k].count),
+            Content::One(k) => (k as u32, 1),
         };
-        run.first as usize..(run.first + run.count) as usize
+        first as usize..(first + count) as usize
+    }
+}
+
+/// What the leaves are made from.
+struct Leaves<'a> {
+    shapes: &'a [Shape],
+    order: &'a [u32],
+    frame: &'a Frame,
+}
+
+impl Leaves<'_> {
+    fn shapes_of(&self, run: Run) -> impl Iterator<Item = &Shape> {
+        let places = run.first as usize..(run.first + run.count) as usize;
+        self.order[places].iter().map(|k| &self.shapes[*k as usize])
+    }
+
+    fn spheres(&self, run: Run) -> Spheres {
+        let mut block = Spheres::new(run.first);
+        for shape in self.shapes_of(run) {
+            if let Shape::Sphere(s) = shape {
+                let (center, radius) = (self.frame.point(s.center()), self.frame.length(s.radius()));
+                block.push(center.to_array(), radius, self.frame.pad());
+            }
+        }
+        block
+    }
+
+    fn triangles(&self, run: Run) -> Triangles {
+        let mut block = Triangles::new(run.first);
+        for shape in self.shapes_of(run) {
+            if let Shape::Triangle(t) = shape {
+                let corners = t.vertices().map(|v| self.frame.point(v));
+                block.push(corners, self.frame.coarseness());
+            }
+        }
+        block
     }
 }
