@@ -13,6 +13,8 @@ mod cone;
 mod cylinder;
 mod everywhere;
 mod flat;
+mod leaving;
+mod mirrors;
 mod oracle;
 mod random;
 mod round;

@@ -10,7 +10,7 @@ use super::subject::{Subject, vector};
 use super::surface;
 
 /// The bars of K: the largest, and that of all but one in a hundred.
-const K_MAX: f64 = 16.0;
+pub(crate) const K_MAX: f64 = 16.0;
 const K_99: f64 = 4.0;
 
 /// What one ray showed.

@@ -132,11 +132,10 @@ impl Subject {
         }
     }
 
-    /// The start `origin` and direction `dir` in the frame of the shape.
-    pub(crate) fn question(&self, origin: &BigVec, dir: &BigVec) -> Question {
-        let (anchor, axis, radius) = self.round_parts();
-        let f = origin.minus(&big_vec(anchor));
-        let lengths = exponent_to_unit(max_abs(&f).max(radius).max(max_abs(&axis)));
+    /// A ray in the frame of the shape, from `f` relative to the anchor.
+    pub(crate) fn question(&self, f: &BigVec, dir: &BigVec) -> Question {
+        let (_, axis, radius) = self.round_parts();
+        let lengths = exponent_to_unit(max_abs(f).max(radius).max(max_abs(&axis)));
         let dirs = exponent_to_unit(max_abs(dir));
         let axis = axis.shifted(lengths);
         let (f, d) = (f.shifted(lengths), dir.shifted(dirs));
@@ -162,21 +161,45 @@ impl Subject {
 
     /// The oracle's answer, with `t` as [`Question::parameter`] scales it.
     pub(crate) fn answer(&self, ray: &Ray) -> (Answer, Question) {
-        let question = self.question(&big_vec(ray.origin), &big_vec(ray.dir));
+        let f = big_vec(ray.origin).minus(&self.anchor());
+        let question = self.question(&f, &big_vec(ray.dir));
+        (self.answer_to(&question), question)
+    }
+
+    /// The oracle's answer to a question of this shape.
+    pub(crate) fn answer_to(&self, question: &Question) -> Answer {
         let local = &question.local;
-        let answer = match self {
+        match self {
             Self::Sphere { .. } => round::sphere(local),
             Self::Cylinder { ends, .. } => round::cylinder(local, *ends == Ends::Closed),
             Self::Cone { ends, .. } => round::cone(local, *ends == Ends::Closed),
             _ => {
-                let vertices = self.vertices();
-                let origin = big_vec(ray.origin);
-                let seen = |v: &DVec3| big_vec(*v).minus(&origin).shifted(question.lengths);
+                let (vertices, anchor) = (self.vertices(), self.anchor());
+                let from_anchor = |v: &DVec3| big_vec(*v).minus(&anchor).shifted(question.lengths);
+                let seen = |v: &DVec3| from_anchor(v).minus(&local.f);
                 let seen: Vec<BigVec> = vertices.iter().map(seen).collect();
                 oracle::flat(&seen, [1, vertices.len() - 1], &local.d)
             }
-        };
-        (answer, question)
+        }
+    }
+
+    /// The axis of a cylinder or cone, from base to top.
+    pub(crate) fn axis(&self) -> Option<DVec3> {
+        match self {
+            Self::Cylinder { base, top, .. } => Some(top - base),
+            Self::Cone { base, apex, .. } => Some(apex - base),
+            _ => None,
+        }
+    }
+
+    /// Whether the shape bounds a solid.
+    pub(crate) fn is_closed(&self) -> bool {
+        matches!(
+            self,
+            Self::Sphere { .. }
+                | Self::Cylinder { ends: Ends::Closed, .. }
+                | Self::Cone { ends: Ends::Closed, .. }
+        )
     }
 
     /// This shape moved by `shift` and scaled by `scale`.
