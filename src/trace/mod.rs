@@ -7,21 +7,19 @@
 //! point ([`sum`]), where order does not matter.
 
 mod counts;
-pub mod refract;
 mod shadow;
 mod signature;
 mod sum;
 
 use crate::{
     color::Rgb,
-    geometry::{Hit, Ray, Surface},
+    geometry::{Hit, Ray, Surface, reflect, refract},
     light::Light,
     material::Material,
     scene::Scene,
     texture::TexturePoint,
 };
 pub use counts::RayCounts;
-pub use refract::{reflect, refract};
 use shadow::Shadows;
 use signature::{Branch, Path};
 use sum::Sum;
@@ -287,7 +285,10 @@ impl<'a> Tracer<'a> {
             let arriving = light.intensity * shadow.transmittance;
             lit.diffuse += arriving * (lit.material.diffuse * shadow.cosine as f32);
             if lit.material.specular > 0.0 {
-                let highlight = reflect(lit.task.ray.dir, lit.normal()).dot(shadow.to_light);
+                // The mirror direction, d − 2 (d·n) n, against the direction of the light.
+                let dir = lit.task.ray.dir;
+                let highlight =
+                    dir.dot(shadow.to_light) - 2.0 * dir.dot(lit.normal()) * shadow.cosine;
                 if highlight > 0.0 {
                     let shine = highlight.powf(lit.material.shininess) as f32;
                     lit.specular += arriving * (lit.material.specular * shine);
