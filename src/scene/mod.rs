@@ -9,6 +9,8 @@ pub mod desc;
 pub mod error;
 pub mod generators;
 pub mod load;
+#[cfg(test)]
+mod tests;
 
 use std::{ops::ControlFlow, time::Instant};
 
