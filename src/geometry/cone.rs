@@ -226,6 +226,7 @@ impl Cone {
         }
     }
 
+    #[inline(always)]
     pub(crate) fn surface(&self, ray: &Ray, t: f64, face: u8, own: Option<&Departure>) -> Surface {
         let start =
             own.map_or_else(|| self.frame.to_local(ray.origin - self.apex), |from| from.local);
@@ -246,6 +247,7 @@ impl Cone {
     }
 
     /// The point of the side nearest to `q`.
+    #[inline(always)]
     fn onto_side(&self, q: DVec3) -> DVec3 {
         let rho = hypot(q.x, q.z);
         if rho == 0.0 {

@@ -154,6 +154,7 @@ impl Cylinder {
         }
     }
 
+    #[inline(always)]
     pub(crate) fn surface(&self, ray: &Ray, t: f64, face: u8, own: Option<&Departure>) -> Surface {
         let start =
             own.map_or_else(|| self.frame.to_local(ray.origin - self.base), |from| from.local);

@@ -80,6 +80,7 @@ impl Polygon {
         [flat::crossing(&self.vertices, self.normal, ray), Crossing::NONE]
     }
 
+    #[inline(always)]
     pub(crate) fn surface(&self, ray: &Ray, t: f64) -> Surface {
         flat::surface(self.vertices[0], self.normal, ray, t)
     }

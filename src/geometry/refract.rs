@@ -8,7 +8,7 @@ use crate::math::{cross, dot};
 ///
 /// The division matters although normals are of unit length: one that is off by a rounding would make a ray
 /// steeper at each of a hundred thousand bounces.
-#[inline]
+#[inline(always)]
 pub fn reflect(dir: DVec3, normal: DVec3) -> DVec3 {
     let along = 2.0 * dot(dir, normal) / dot(normal, normal);
     DVec3::new(
@@ -27,7 +27,7 @@ pub fn reflect(dir: DVec3, normal: DVec3) -> DVec3 {
 /// With s the sine of the angle of incidence, from n × d and not from n·d, the squared cosine behind the surface is
 /// (n₂ − n₁s)(n₂ + n₁s)/n₂², whose first factor decides about total reflection. The usual 1 − (n₁/n₂)²(1 − cos²)
 /// cancels twice, at normal incidence and at the critical angle.
-#[inline]
+#[inline(always)]
 pub fn refract(
     dir: DVec3,
     normal: DVec3,

@@ -175,32 +175,32 @@ impl Shape {
     }
 
     /// The surface where `ray` meets this shape in `hit`.
+    #[inline(always)]
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         let own = ray.from.as_ref().filter(|from| from.primitive == hit.primitive);
-        if let (Some(from), None) = (&ray.from, own)
-            && let (direct, Some(t)) = self.met_directly(ray, from, hit)
-        {
-            return self.surface(&direct, &Hit { t, ..*hit });
-        }
+        let (ray, t) = match (&ray.from, own) {
+            (Some(from), None) => self.met_directly(ray, from, hit).unwrap_or((*ray, hit.t)),
+            _ => (*ray, hit.t),
+        };
         match self {
-            Self::Sphere(s) => s.surface(ray, hit.t, own),
-            Self::Cylinder(s) => s.surface(ray, hit.t, hit.face, own),
-            Self::Cone(s) => s.surface(ray, hit.t, hit.face, own),
-            Self::Quad(s) => s.surface(ray, hit.t),
-            Self::Triangle(s) => s.surface(ray, hit.t),
-            Self::Polygon(s) => s.surface(ray, hit.t),
+            Self::Sphere(s) => s.surface(&ray, t, own),
+            Self::Cylinder(s) => s.surface(&ray, t, hit.face, own),
+            Self::Cone(s) => s.surface(&ray, t, hit.face, own),
+            Self::Quad(s) => s.surface(&ray, t),
+            Self::Triangle(s) => s.surface(&ray, t),
+            Self::Polygon(s) => s.surface(&ray, t),
         }
     }
 
     /// The ray from the very point that `ray` leaves, and where it crosses this shape in place of `hit`.
     ///
     /// Nowhere, if the step aside that `ray` starts with makes the difference between hit and miss.
-    fn met_directly(&self, ray: &Ray, from: &Departure, hit: &Hit) -> (Ray, Option<f64>) {
+    fn met_directly(&self, ray: &Ray, from: &Departure, hit: &Hit) -> Option<(Ray, f64)> {
         let direct = Ray::new(from.point, ray.dir);
         let near = |a: &Crossing, b: &Crossing| (a.t - hit.t).abs().total_cmp(&(b.t - hit.t).abs());
         let crossings = self.crossings(&direct);
         let same = crossings.iter().filter(|c| c.face == hit.face && c.t.is_finite());
-        (direct, same.min_by(|a, b| near(a, b)).map(|c| c.t))
+        same.min_by(|a, b| near(a, b)).map(|c| (direct, c.t))
     }
 
     /// Whether [`Surface::uv`] means anything on this shape.

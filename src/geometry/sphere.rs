@@ -83,6 +83,7 @@ impl Sphere {
         [Crossing::at(t), Crossing::NONE]
     }
 
+    #[inline(always)]
     pub(crate) fn surface(&self, ray: &Ray, t: f64, own: Option<&Departure>) -> Surface {
         let start = own.map_or(ray.origin - self.center, |from| from.local);
         let q = start + ray.dir * t;

@@ -44,6 +44,7 @@ impl Triangle {
         [flat::crossing(&self.vertices, self.normal, ray), Crossing::NONE]
     }
 
+    #[inline(always)]
     pub(crate) fn surface(&self, ray: &Ray, t: f64) -> Surface {
         flat::surface(self.vertices[0], self.normal, ray, t)
     }

@@ -189,6 +189,7 @@ impl Scene {
         self.accel.shape(primitive)
     }
 
+    #[inline(always)]
     pub(crate) fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         self.shape(hit.primitive).surface(ray, hit)
     }
