@@ -132,10 +132,7 @@ impl Spheres {
         let gap = simd.sub(simd.load(&self.outer), offset);
         let half = simd.sqrt(simd.mul(gap, ray.inverse));
         let (enter, leave) = (simd.sub(b, half), simd.add(b, half));
-        let maybe = simd.le(
-            simd.max(simd.splat(0.0), enter),
-            simd.min(simd.splat(limit), leave),
-        );
+        let maybe = simd.le(simd.max(simd.splat(0.0), enter), simd.min(simd.splat(limit), leave));
         if maybe == 0 {
             return Candidates::NONE;
         }

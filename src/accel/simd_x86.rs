@@ -2,11 +2,13 @@
 #![allow(unsafe_code, reason = "instructions that not every machine has")]
 
 use std::arch::x86_64::{
-    __m256, _CMP_LE_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_cmp_ps, _mm256_div_ps, _mm256_fmadd_ps,
-    _mm256_fmsub_ps, _mm256_fnmadd_ps, _mm256_loadu_ps, _mm256_max_ps, _mm256_min_ps,
-    _mm256_movemask_ps, _mm256_mul_ps, _mm256_set1_ps, _mm256_sqrt_ps, _mm256_storeu_ps,
-    _mm256_sub_ps, _mm256_xor_ps,
+    __m256, _CMP_LE_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_cmp_ps, _mm256_div_ps,
+    _mm256_fmadd_ps, _mm256_fmsub_ps, _mm256_fnmadd_ps, _mm256_loadu_ps, _mm256_max_ps,
+    _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_set1_ps, _mm256_sqrt_ps,
+    _mm256_storeu_ps, _mm256_sub_ps, _mm256_xor_ps,
 };
+
+use crate::geometry::{Ray, Shape, hit::Crossings};
 
 use super::simd::{Kernel, Lanes, Simd};
 
@@ -45,6 +47,17 @@ impl Simd for Avx2 {
         }
         // SAFETY: `self` proves that the machine has AVX2 and FMA.
         unsafe { compiled(self, kernel) }
+    }
+
+    #[inline(always)]
+    fn crossings(self, shape: &Shape, ray: &Ray, primitive: u32) -> Crossings {
+        #[target_feature(enable = "avx2,fma")]
+        #[inline(never)]
+        fn compiled(shape: &Shape, ray: &Ray, primitive: u32) -> Crossings {
+            shape.crossings_of(ray, primitive)
+        }
+        // SAFETY: `self` proves that the machine has AVX2 and FMA.
+        unsafe { compiled(shape, ray, primitive) }
     }
 
     #[inline(always)]

@@ -81,7 +81,8 @@ impl Leaves<'_> {
         let mut block = Spheres::new(run.first);
         for shape in self.shapes_of(run) {
             if let Shape::Sphere(s) = shape {
-                let (center, radius) = (self.frame.point(s.center()), self.frame.length(s.radius()));
+                let (center, radius) =
+                    (self.frame.point(s.center()), self.frame.length(s.radius()));
                 block.push(center.to_array(), radius, self.frame.pad());
             }
         }

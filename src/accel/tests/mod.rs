@@ -49,8 +49,7 @@ fn check(name: &str, shapes: &[Shape], rays: &[Ray]) -> usize {
                 assert_eq!(found, expected, "{name}, {isa:?}, ray {k} to {end}");
                 let stops = |n: u32| n % 3 == 1;
                 let expected = expected.iter().any(|(n, ..)| stops(*n));
-                let blocked =
-                    accel.is_blocked(ray, end, stops, |_, _| ControlFlow::Continue(()));
+                let blocked = accel.is_blocked(ray, end, stops, |_, _| ControlFlow::Continue(()));
                 assert_eq!(blocked, expected, "{name}, {isa:?}, ray {k} to {end}");
             }
         }
