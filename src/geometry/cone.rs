@@ -242,7 +242,7 @@ impl Cone {
         let point = self.apex + self.frame.to_world(q);
         let normal = self.frame.to_world(normal);
         let error = Surface::error_bound(normal, point.abs() + self.radius + self.height);
-        Surface { point, normal, local: q, error, uv: DVec2::ZERO }
+        Surface { point, point_rest: DVec3::ZERO, normal, local: q, error, uv: DVec2::ZERO }
     }
 
     /// The point of the side nearest to `q`.

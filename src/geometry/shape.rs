@@ -180,15 +180,20 @@ impl Shape {
         if let (Some(from), None) = (&ray.from, own)
             && let (direct, Some(t)) = self.met_directly(ray, from, hit)
         {
-            return self.surface(&direct, &Hit { t, ..*hit });
+            return self.surface_at(&direct, &Hit { t, ..*hit }, None, from.point_rest);
         }
+        self.surface_at(ray, hit, own, DVec3::ZERO)
+    }
+
+    /// As [`surface`](Self::surface), for a ray from this shape (`own`) or from its origin plus `rest`.
+    fn surface_at(&self, ray: &Ray, hit: &Hit, own: Option<&Departure>, rest: DVec3) -> Surface {
         match self {
             Self::Sphere(s) => s.surface(ray, hit.t, own),
             Self::Cylinder(s) => s.surface(ray, hit.t, hit.face, own),
             Self::Cone(s) => s.surface(ray, hit.t, hit.face, own),
-            Self::Quad(s) => s.surface(ray, hit.t),
-            Self::Triangle(s) => s.surface(ray, hit.t),
-            Self::Polygon(s) => s.surface(ray, hit.t),
+            Self::Quad(s) => s.surface(ray, hit.t, rest),
+            Self::Triangle(s) => s.surface(ray, hit.t, rest),
+            Self::Polygon(s) => s.surface(ray, hit.t, rest),
         }
     }
 
