@@ -13,6 +13,8 @@ mod cone;
 mod cylinder;
 mod everywhere;
 mod flat;
+mod fuzz;
+mod gaps;
 mod leaving;
 mod meshes;
 mod mirrors;
