@@ -81,7 +81,7 @@ impl Polygon {
     }
 
     #[inline(always)]
-    pub(crate) fn surface(&self, ray: &Ray, t: f64) -> Surface {
-        flat::surface(self.vertices[0], self.normal, ray, t)
+    pub(crate) fn surface(&self, ray: &Ray, t: f64, rest: DVec3) -> Surface {
+        flat::surface(self.vertices[0], self.normal, ray, t, rest)
     }
 }

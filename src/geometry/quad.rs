@@ -51,8 +51,8 @@ impl Quad {
     }
 
     #[inline(always)]
-    pub(crate) fn surface(&self, ray: &Ray, t: f64) -> Surface {
-        let mut surface = flat::surface(self.vertices[0], self.normal, ray, t);
+    pub(crate) fn surface(&self, ray: &Ray, t: f64, rest: DVec3) -> Surface {
+        let mut surface = flat::surface(self.vertices[0], self.normal, ray, t, rest);
         surface.uv = self.uv(surface.point);
         surface
     }

@@ -178,29 +178,36 @@ impl Shape {
     #[inline(always)]
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         let own = ray.from.as_ref().filter(|from| from.primitive == hit.primitive);
-        let (ray, t) = match (&ray.from, own) {
-            (Some(from), None) => self.met_directly(ray, from, hit).unwrap_or((*ray, hit.t)),
-            _ => (*ray, hit.t),
-        };
+        if let (Some(from), None) = (&ray.from, own)
+            && let (direct, Some(t)) = self.met_directly(ray, from, hit)
+        {
+            return self.surface_at(&direct, &Hit { t, ..*hit }, None, from.point_rest);
+        }
+        self.surface_at(ray, hit, own, DVec3::ZERO)
+    }
+
+    /// As [`surface`](Self::surface), for a ray from this shape (`own`) or from its origin plus `rest`.
+    #[inline(always)]
+    fn surface_at(&self, ray: &Ray, hit: &Hit, own: Option<&Departure>, rest: DVec3) -> Surface {
         match self {
-            Self::Sphere(s) => s.surface(&ray, t, own),
-            Self::Cylinder(s) => s.surface(&ray, t, hit.face, own),
-            Self::Cone(s) => s.surface(&ray, t, hit.face, own),
-            Self::Quad(s) => s.surface(&ray, t),
-            Self::Triangle(s) => s.surface(&ray, t),
-            Self::Polygon(s) => s.surface(&ray, t),
+            Self::Sphere(s) => s.surface(ray, hit.t, own),
+            Self::Cylinder(s) => s.surface(ray, hit.t, hit.face, own),
+            Self::Cone(s) => s.surface(ray, hit.t, hit.face, own),
+            Self::Quad(s) => s.surface(ray, hit.t, rest),
+            Self::Triangle(s) => s.surface(ray, hit.t, rest),
+            Self::Polygon(s) => s.surface(ray, hit.t, rest),
         }
     }
 
     /// The ray from the very point that `ray` leaves, and where it crosses this shape in place of `hit`.
     ///
     /// Nowhere, if the step aside that `ray` starts with makes the difference between hit and miss.
-    fn met_directly(&self, ray: &Ray, from: &Departure, hit: &Hit) -> Option<(Ray, f64)> {
+    fn met_directly(&self, ray: &Ray, from: &Departure, hit: &Hit) -> (Ray, Option<f64>) {
         let direct = Ray::new(from.point, ray.dir);
         let near = |a: &Crossing, b: &Crossing| (a.t - hit.t).abs().total_cmp(&(b.t - hit.t).abs());
         let crossings = self.crossings(&direct);
         let same = crossings.iter().filter(|c| c.face == hit.face && c.t.is_finite());
-        same.min_by(|a, b| near(a, b)).map(|c| (direct, c.t))
+        (direct, same.min_by(|a, b| near(a, b)).map(|c| c.t))
     }
 
     /// Whether [`Surface::uv`] means anything on this shape.
@@ -231,7 +238,8 @@ impl Shape {
         let crossing = first_ahead(&shape.crossings_of(&ray, primitive), f64::INFINITY)?;
         let hit = Hit { t: crossing.t, primitive, face: crossing.face };
         let surface = map.surface_back(&shape.surface(&ray, &hit));
-        Some((Hit { t: rescale.apply(hit.t), ..hit }, surface))
+        // A hit is ahead, even one so near in lengths of a long direction that its distance underflows.
+        Some((Hit { t: rescale.apply(hit.t).max(f64::from_bits(1)), ..hit }, surface))
     }
 }
 
