@@ -36,6 +36,8 @@ pub struct Sample {
     /// A hash of all that the ray tree met: surfaces and their sides, cells of patterns, which lights were seen through what.
     /// Two samples with the same signature differ by what varies smoothly.
     pub signature: u32,
+    /// How many rays it took, those towards lights included.
+    pub rays: u32,
 }
 
 /// A ray yet to be traced.
@@ -71,6 +73,7 @@ struct Lit<'a> {
 struct Gathered {
     color: Sum,
     signature: u32,
+    rays: u32,
 }
 
 /// Traces rays through a scene; each worker has its own.
@@ -130,7 +133,8 @@ impl<'a> Tracer<'a> {
             self.scene.accel().run(Batch(self));
         }
         samples.clear();
-        let sample = |g: &Gathered| Sample { color: g.color.value(), signature: g.signature };
+        let sample =
+            |g: &Gathered| Sample { color: g.color.value(), signature: g.signature, rays: g.rays };
         samples.extend(self.gathered.iter().map(sample));
     }
 
@@ -182,6 +186,7 @@ impl<'a> Tracer<'a> {
     #[inline(always)]
     fn gather(&mut self, task: &Task, light: Rgb, signature: u32) {
         let gathered = &mut self.gathered[task.sample as usize];
+        gathered.rays += 1;
         gathered.color.add(task.weight * light);
         gathered.signature = gathered.signature.wrapping_add(signature);
     }
@@ -279,6 +284,7 @@ impl<'a> Tracer<'a> {
             if cosine > 0.0 {
                 ray.dir = light.position - ray.origin; // so that the light is at t = 1
                 self.shadows.push(index, ray, to_light, cosine);
+                self.gathered[lit.task.sample as usize].rays += 1;
             }
         }
         self.counts.shadow += self.shadows.len() as u64;
