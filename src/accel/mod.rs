@@ -161,16 +161,20 @@ impl Accel {
         }
     }
 
-    /// Calls `visit(index, primitive, crossing)` for every crossing of each of up to 64 rays before its end at `t = 1`, which is
-    /// `target` for all of them, in no order; a ray whose visit breaks is done.
-    pub fn any_crossing_packet(
+    /// As [`Accel::is_blocked`] for up to 64 rays that all end at `t = 1` in `target`; `blocked` gets the answers, and
+    /// `visit(index, primitive, crossing)` is told the ray too.
+    pub fn is_blocked_packet(
         &self,
         rays: &[Ray],
         _target: DVec3,
+        opaque: impl Fn(u32) -> bool,
         mut visit: impl FnMut(u32, u32, Crossing) -> ControlFlow<()>,
+        blocked: &mut [bool],
     ) {
-        for (ray, index) in rays.iter().zip(0..) {
-            self.any_crossing(ray, 1.0, |primitive, crossing| visit(index, primitive, crossing));
+        for ((ray, blocked), index) in rays.iter().zip(blocked).zip(0..) {
+            *blocked = self.is_blocked(ray, 1.0, &opaque, |primitive, crossing| {
+                visit(index, primitive, crossing)
+            });
         }
     }
 
