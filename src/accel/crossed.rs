@@ -45,6 +45,10 @@ where
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> bool {
         let Self { accel, ray, end, opaque, visit } = self;
+        #[cfg(feature = "leaf-study")]
+        if super::study::is_naive() {
+            return super::study::is_blocked(simd, accel, ray, end, opaque, visit);
+        }
         let mut test = Test { accel, ray, end, opaque, visit };
         for place in accel.outside() {
             if test.test(simd, place) {
@@ -92,6 +96,8 @@ where
     #[inline(always)]
     pub(super) fn test<S: Simd>(&mut self, simd: S, place: usize) -> bool {
         let number = self.accel.numbers[place];
+        #[cfg(feature = "leaf-study")]
+        super::study::count_test(&self.accel.shapes[place]);
         let [first, second] = simd.crossings(&self.accel.shapes[place], self.ray, number);
         self.crosses(number, first) || self.crosses(number, second)
     }
@@ -149,6 +155,8 @@ where
 
     #[inline(always)]
     fn leaf(&mut self, simd: S, leaf: Content) -> bool {
+        #[cfg(feature = "leaf-study")]
+        super::study::count_leaf(leaf);
         self.stopped = match leaf {
             Content::Spheres(k) => {
                 let block = &self.tree.spheres[k];

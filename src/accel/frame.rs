@@ -44,7 +44,7 @@ pub(super) struct TreeRay {
     /// Lengths of the direction here for each length of the direction in the world; a power of two.
     pub(super) rate: f64,
     /// The parameter (here) at which it arrives.
-    arrival: f64,
+    pub(super) arrival: f64,
     slack: f64,
 }
 

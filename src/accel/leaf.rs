@@ -32,10 +32,10 @@ impl Candidates {
 /// A ray made ready for the tests of leaves.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LeafRay {
-    origin: [f32; 3],
-    dir: [f32; 3],
+    pub(super) origin: [f32; 3],
+    pub(super) dir: [f32; 3],
     /// One over the squared length of the direction.
-    inverse: f32,
+    pub(super) inverse: f32,
     /// The length of the direction.
     length: f32,
     /// The end of the ray, rounded down.
@@ -59,17 +59,17 @@ impl LeafRay {
 
 /// The same vector in all lanes.
 #[inline(always)]
-fn splat<S: Simd>(simd: S, v: [f32; 3]) -> [S::F; 3] {
+pub(super) fn splat<S: Simd>(simd: S, v: [f32; 3]) -> [S::F; 3] {
     [simd.splat(v[0]), simd.splat(v[1]), simd.splat(v[2])]
 }
 
 #[inline(always)]
-fn dot<S: Simd>(simd: S, a: [S::F; 3], b: [S::F; 3]) -> S::F {
+pub(super) fn dot<S: Simd>(simd: S, a: [S::F; 3], b: [S::F; 3]) -> S::F {
     simd.mul_add(a[0], b[0], simd.mul_add(a[1], b[1], simd.mul(a[2], b[2])))
 }
 
 #[inline(always)]
-fn cross<S: Simd>(simd: S, a: [S::F; 3], b: [S::F; 3]) -> [S::F; 3] {
+pub(super) fn cross<S: Simd>(simd: S, a: [S::F; 3], b: [S::F; 3]) -> [S::F; 3] {
     [
         simd.mul_sub(a[1], b[2], simd.mul(a[2], b[1])),
         simd.mul_sub(a[2], b[0], simd.mul(a[0], b[2])),
@@ -78,12 +78,12 @@ fn cross<S: Simd>(simd: S, a: [S::F; 3], b: [S::F; 3]) -> [S::F; 3] {
 }
 
 #[inline(always)]
-fn sub<S: Simd>(simd: S, a: [S::F; 3], b: [S::F; 3]) -> [S::F; 3] {
+pub(super) fn sub<S: Simd>(simd: S, a: [S::F; 3], b: [S::F; 3]) -> [S::F; 3] {
     [simd.sub(a[0], b[0]), simd.sub(a[1], b[1]), simd.sub(a[2], b[2])]
 }
 
 #[inline(always)]
-fn load<S: Simd>(simd: S, v: &[[f32; 8]; 3]) -> [S::F; 3] {
+pub(super) fn load<S: Simd>(simd: S, v: &[[f32; 8]; 3]) -> [S::F; 3] {
     [simd.load(&v[0]), simd.load(&v[1]), simd.load(&v[2])]
 }
 
@@ -91,9 +91,9 @@ fn load<S: Simd>(simd: S, v: &[[f32; 8]; 3]) -> [S::F; 3] {
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Spheres {
-    center: [[f32; 8]; 3],
+    pub(super) center: [[f32; 8]; 3],
     /// The square of a radius that is certainly too large; negative for a sphere that is not there.
-    outer: [f32; 8],
+    pub(super) outer: [f32; 8],
     /// The square of a radius that is certainly too small; negative if there is none.
     inner: [f32; 8],
     /// The place of the first, and how many there are.
@@ -155,9 +155,9 @@ impl Spheres {
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Triangles {
-    corner: [[f32; 8]; 3],
-    edge1: [[f32; 8]; 3],
-    edge2: [[f32; 8]; 3],
+    pub(super) corner: [[f32; 8]; 3],
+    pub(super) edge1: [[f32; 8]; 3],
+    pub(super) edge2: [[f32; 8]; 3],
     /// The longest edge of all.
     size: f32,
     /// What the errors below are multiplied by where the pad is larger than usual.

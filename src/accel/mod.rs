@@ -18,6 +18,8 @@ mod query;
 mod simd;
 #[cfg(target_arch = "x86_64")]
 mod simd_x86;
+#[cfg(feature = "leaf-study")]
+pub mod study;
 #[cfg(test)]
 mod tests;
 mod tree;
@@ -67,6 +69,9 @@ pub struct Accel {
     inside: usize,
     bounds: Bounds,
     isa: Isa,
+    /// The shapes as the textbook has them, in their places.
+    #[cfg(feature = "leaf-study")]
+    naive: Vec<study::NaiveShape>,
 }
 
 impl Accel {
@@ -91,7 +96,17 @@ impl Accel {
         }
         let shapes = in_order(shapes, &numbers);
         let isa = if isa.is_available() { isa } else { Isa::Portable };
-        Self { tree, shapes, numbers, places, inside, bounds, isa }
+        Self {
+            tree,
+            #[cfg(feature = "leaf-study")]
+            naive: shapes.iter().map(study::NaiveShape::new).collect(),
+            shapes,
+            numbers,
+            places,
+            inside,
+            bounds,
+            isa,
+        }
     }
 
     /// The number of primitives.

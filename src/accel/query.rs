@@ -41,6 +41,8 @@ impl Best {
     #[inline(always)]
     pub(super) fn test<S: Simd>(&mut self, simd: S, accel: &Accel, ray: &Ray, place: usize) {
         let number = accel.numbers[place];
+        #[cfg(feature = "leaf-study")]
+        super::study::count_test(&accel.shapes[place]);
         let [first, second] = simd.crossings(&accel.shapes[place], ray, number);
         self.offer(first, number);
         self.offer(second, number);
@@ -66,6 +68,10 @@ impl Kernel for Nearest<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Option<Hit> {
         let Self { accel, ray, end } = self;
+        #[cfg(feature = "leaf-study")]
+        if super::study::is_naive() {
+            return super::study::nearest(simd, accel, ray, end);
+        }
         let mut best = Best::before(end);
         for place in accel.outside() {
             best.test(simd, accel, ray, place);
@@ -184,6 +190,8 @@ impl<S: Simd> Visitor<S> for Search<'_> {
 
     #[inline(always)]
     fn leaf(&mut self, simd: S, leaf: Content) -> bool {
+        #[cfg(feature = "leaf-study")]
+        super::study::count_leaf(leaf);
         match leaf {
             Content::Spheres(k) => {
                 let block = &self.tree.spheres[k];
