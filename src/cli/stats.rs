@@ -91,7 +91,7 @@ impl<'a> Statistics<'a> {
             rays: Rays { camera, reflected, refracted, transmitted, shadow, camera_hit },
             bvh: Bvh { nodes: bvh.nodes, bytes: bvh.bytes },
             samples_per_pixel: Samples::of(&rendering.film),
-            error: Error { estimated_rmse: None, measured_rmse: None },
+            error: Error { estimated_rmse: Some(rendering.estimated_rmse), measured_rmse: None },
             peak_memory_bytes: memory::peak(),
             version: env!("CARGO_PKG_VERSION"),
         }
