@@ -35,8 +35,7 @@
 //! ```
 //! use glam::DVec3;
 //! use whitted::{
-//!     geometry::{Ray, Shape, Sphere},
-//!     trace::{reflect, refract},
+//!     geometry::{Ray, Shape, Sphere, reflect, refract},
 //! };
 //!
 //! // One primitive, number 0: a ball of glass, a light-year away from the origin in metres.

@@ -176,6 +176,12 @@ pub fn sequence_unseen(points: u32) -> f32 {
     by_logarithms(&SHARES, points.max(1) as f32)
 }
 
+/// The share of the variance that `points` of the sequence leave by themselves.
+pub fn bare_sequence_share(points: u32) -> f32 {
+    const SHARES: [(f32, f32); 4] = [(1.0, 1.0), (4.0, 0.036), (16.0, 0.0070), (64.0, 0.0011)];
+    by_logarithms(&SHARES, points.max(1) as f32)
+}
+
 /// The share of the variance that a grid of `side` × `side` samples leaves.
 pub fn grid_share(side: u32) -> f32 {
     by_logarithms(&[(2.0, 0.062), (3.0, 0.021), (4.0, 0.011), (6.0, 0.004)], side as f32)

@@ -31,6 +31,11 @@ pub enum AntiAliasing {
         /// Cells along a side of the pixel; from 1 to 64 in what is read from text.
         side: u32,
     },
+    /// As many rays in each pixel, at the places of a [sequence](sobol::Sequence) other than that of `Adaptive`: for references.
+    Sequence {
+        /// Rays through each pixel; best a power of two.
+        count: u32,
+    },
     /// Rays where the picture needs them: one through each centre, more where those of neighbours met different things or
     /// differ in colour, until the pixel's estimated error is below `error` or `most` rays are spent.
     Adaptive {
@@ -48,7 +53,7 @@ pub enum AaError {
     /// The mode is not known.
     #[error(
         "unknown anti-aliasing mode `{text}` (known: none, grid:N with N from 1 to 64, adaptive, \
-         adaptive:ERROR, adaptive:ERROR,MAX)"
+         adaptive:ERROR, adaptive:ERROR,MAX; for references, sobol:N with N rays in each pixel)"
     )]
     UnknownMode {
         /// What was read.
@@ -61,6 +66,12 @@ pub enum AaError {
     Side {
         /// What was read behind the colon.
         side: String,
+    },
+    /// The sequence is empty, too long or not a number.
+    #[error("anti-aliasing mode `sobol:{count}` needs a whole number of rays, from 1 to 1048576")]
+    Count {
+        /// What was read behind the colon.
+        count: String,
     },
     /// The error of a pixel is negative or not a number.
     #[error("anti-aliasing mode `adaptive:{text}` needs an error in levels of 255, zero or more")]
@@ -105,6 +116,7 @@ impl fmt::Display for AntiAliasing {
         match self {
             Self::None => write!(f, "none"),
             Self::Grid { side } => write!(f, "grid:{side}"),
+            Self::Sequence { count } => write!(f, "sobol:{count}"),
             Self::Adaptive { error, most } => write!(f, "adaptive:{error},{most}"),
         }
     }
@@ -120,6 +132,10 @@ impl FromStr for AntiAliasing {
             Some(("grid", side)) => match side.parse() {
                 Ok(side @ 1..=LARGEST_SIDE) => Ok(Self::Grid { side }),
                 _ => Err(AaError::Side { side: side.to_owned() }),
+            },
+            Some(("sobol", count)) => match count.parse() {
+                Ok(count @ 1..=MOST_RAYS) => Ok(Self::Sequence { count }),
+                _ => Err(AaError::Count { count: count.to_owned() }),
             },
             Some(("adaptive", numbers)) => adaptive(numbers),
             _ if text == "grid" => Err(AaError::Side { side: String::new() }),
@@ -159,7 +175,9 @@ mod tests {
 
     #[test]
     fn modes_are_read_as_they_are_written() {
-        for text in ["none", "grid:1", "grid:2", "grid:64", "adaptive:4,64", "adaptive:0.5,1"] {
+        for text in
+            ["none", "grid:1", "grid:2", "grid:64", "adaptive:4,64", "adaptive:0.5,1", "sobol:1024"]
+        {
             assert_eq!(text.parse::<AntiAliasing>().expect(text).to_string(), text);
         }
         assert_eq!("adaptive".parse(), Ok(AntiAliasing::ADAPTIVE));
@@ -168,6 +186,9 @@ mod tests {
             ["grid:0", "grid:65", "grid:", "grid", "grid:-1", "grid:2.5", "grid:99999999999"]
         {
             assert!(matches!(text.parse::<AntiAliasing>(), Err(AaError::Side { .. })), "{text}");
+        }
+        for text in ["sobol:", "sobol:0", "sobol:-1", "sobol:1.5"] {
+            assert!(matches!(text.parse::<AntiAliasing>(), Err(AaError::Count { .. })), "{text}");
         }
         for text in [
             "adaptive:",

@@ -8,7 +8,7 @@ use glam::DVec2;
 
 use super::{
     Picture,
-    crew::{Crew, Sampler, by_blocks, trace_centers},
+    crew::{Crew, Sampler, in_turn, trace_centers},
     look::{Window, corrected},
     plane::{Area, Plane},
 };
@@ -69,7 +69,7 @@ pub(super) struct Adaptive {
 impl Adaptive {
     /// Traces the centres of `area`, and of the pixels around it, so that a part of a picture is that of the whole.
     pub(super) fn new<S: Sampler>(crew: &Crew<S>, area: &Area, width: u32, most: u32) -> Self {
-        let centers = trace_centers(crew, &area.grown(1), area);
+        let centers = trace_centers(crew, &area.grown(1));
         let colors = Mutex::new(Plane::new(*area, Rgb::ZERO));
         let pixels = Mutex::new(Plane::new(*area, Pixel::default()));
         crew.run(
@@ -142,7 +142,7 @@ impl Adaptive {
             let mut wanting: Vec<usize> = Vec::new();
             loop {
                 wanting.clear();
-                let places = by_blocks(tile).map(|(x, y)| index_in(tile, x, y));
+                let places = in_turn(tile).map(|(x, y)| tile.place_of(x, y));
                 wanting.extend(places.filter(|&index| round.wants(tile, &own[index], index)));
                 if wanting.is_empty() {
                     break;
@@ -196,7 +196,7 @@ impl Adaptive {
                         && wants_corners(pixel, centers.at(x, y), threshold)
                 }
             };
-            let wanted: Vec<(i64, i64)> = by_blocks(tile)
+            let wanted: Vec<(i64, i64)> = in_turn(tile)
                 .filter(|&(x, y)| {
                     let disputed = is_disputed(centers, x, y);
                     known.at(x, y).rays == 0
@@ -273,15 +273,6 @@ fn wants_corners(pixel: &Pixel, center: &Sample, threshold: Threshold) -> bool {
     is_above(threshold, pixel.error, corners * center.rays as f32)
 }
 
-fn index_in(tile: &Area, x: i64, y: i64) -> usize {
-    (y - tile.y0) as usize * tile.width() + (x - tile.x0) as usize
-}
-
-fn place_in(tile: &Area, index: usize) -> (i64, i64) {
-    let width = tile.width();
-    (tile.x0 + (index % width) as i64, tile.y0 + (index / width) as i64)
-}
-
 /// What the pixels of a tile need to know to get their next samples.
 struct Round<'a> {
     area: &'a Area,
@@ -335,13 +326,13 @@ impl Round<'_> {
         let (Some(points), Some(refined)) = (self.next_points(pixel), &pixel.refined) else {
             return false;
         };
-        let (x, y) = place_in(tile, index);
+        let (x, y) = tile.pixel_at(index);
         let rays = (points - refined.points()) * self.centers.at(x, y).rays;
         is_above(self.threshold, pixel.error, rays as f32)
     }
 
     fn next_places(&self, tile: &Area, index: usize, pixel: &Pixel, places: &mut Vec<DVec2>) {
-        let (x, y) = place_in(tile, index);
+        let (x, y) = tile.pixel_at(index);
         debug_assert!(self.area.contains(x, y));
         let number = y as u64 * u64::from(self.width) + x as u64;
         let sequence = Sequence::of_pixel(number, 0);

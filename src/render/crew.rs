@@ -5,7 +5,10 @@ use std::sync::{Mutex, PoisonError};
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::{Progress, plane::Area};
+use super::{
+    Progress,
+    plane::{Area, Plane},
+};
 use crate::aa::Sample;
 
 /// Asks the colour of places on the film.
@@ -84,16 +87,16 @@ impl<S: Sampler> Crew<'_, S> {
     }
 }
 
-/// The pixels of a tile in an order that keeps those of small squares together, so that their rays go the same way.
-pub(super) fn by_blocks(tile: &Area) -> impl Iterator<Item = (i64, i64)> + use<> {
-    const SIDE: i64 = 8;
+/// The pixels of a tile in Morton order, so that any run of them is close together and their rays go the same way.
+pub(super) fn in_turn(tile: &Area) -> impl Iterator<Item = (i64, i64)> + use<> {
     let tile = *tile;
-    let starts = |from: i64, to: i64| (from..to).step_by(SIDE as usize);
-    starts(tile.y0, tile.y1).flat_map(move |y| {
-        starts(tile.x0, tile.x1).flat_map(move |x| {
-            Area { x0: x, y0: y, x1: (x + SIDE).min(tile.x1), y1: (y + SIDE).min(tile.y1) }.pixels()
+    let side = tile.width().max(tile.height()).next_power_of_two() as u32;
+    let even_bits = |code: u32| (0..16).fold(0, |x, bit| x | ((code >> (2 * bit)) & 1) << bit);
+    (0..side * side)
+        .map(move |code| {
+            (tile.x0 + i64::from(even_bits(code)), tile.y0 + i64::from(even_bits(code >> 1)))
         })
-    })
+        .filter(move |&(x, y)| tile.contains(x, y))
 }
 
 /// The centre of a pixel on the film.
@@ -102,12 +105,8 @@ pub(super) fn center(x: i64, y: i64) -> DVec2 {
 }
 
 /// Traces the centre of every pixel of the plane.
-pub(super) fn trace_centers<S: Sampler>(
-    crew: &Crew<S>,
-    area: &Area,
-    inside: &Area,
-) -> super::plane::Plane<Sample> {
-    let centers = Mutex::new(super::plane::Plane::new(*area, Sample::default()));
+pub(super) fn trace_centers<S: Sampler>(crew: &Crew<S>, area: &Area) -> Plane<Sample> {
+    let centers = Mutex::new(Plane::new(*area, Sample::default()));
     crew.run(
         area,
         true,
@@ -115,14 +114,13 @@ pub(super) fn trace_centers<S: Sampler>(
         |sampler, scratch, tile| {
             scratch.places.clear();
             scratch.samples.clear();
-            scratch.places.extend(by_blocks(tile).map(|(x, y)| center(x, y)));
+            scratch.places.extend(in_turn(tile).map(|(x, y)| center(x, y)));
             sampler.sample(&scratch.places, &mut scratch.samples);
             let mut centers = centers.lock().unwrap_or_else(PoisonError::into_inner);
-            for ((x, y), sample) in by_blocks(tile).zip(&scratch.samples) {
+            for ((x, y), sample) in in_turn(tile).zip(&scratch.samples) {
                 *centers.at_mut(x, y) = *sample;
             }
         },
     );
-    debug_assert!(area.contains(inside.x0, inside.y0));
     centers.into_inner().unwrap_or_else(PoisonError::into_inner)
 }

@@ -25,14 +25,11 @@ use crate::{
     film::{Film, Tile},
     geometry::Ray,
     scene::Scene,
-    trace::Tracer,
+    trace::{self, BATCH, Tracer},
 };
 use adaptive::{Adaptive, Threshold};
 use crew::{Crew, Meter};
 use plane::Area;
-
-/// Camera rays that are traced together.
-const PACKET: usize = 64;
 
 /// What the user may choose; the rest is the scene's.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -134,6 +131,10 @@ pub fn picture<S: Sampler>(
             let meter = Meter::new(pixels, progress);
             plain::grid(&Crew { new_sampler, meter: &meter }, &area, side)
         }
+        AntiAliasing::Sequence { count } => {
+            let meter = Meter::new(pixels, progress);
+            plain::sequence(&Crew { new_sampler, meter: &meter }, &area, width, count)
+        }
         AntiAliasing::Adaptive { error, most } => {
             let meter = Meter::new(2 * pixels, progress);
             let crew = Crew { new_sampler, meter: &meter };
@@ -171,8 +172,13 @@ pub fn render(
     let view = scene.camera().view(width, height);
     let part = Tile { x0: 0, y0: 0, x1: width, y1: height };
     let rays = Mutex::new(RayCounts::default());
-    let new_sampler =
-        || Worker { tracer: Tracer::new(scene, depth), view, rays: Vec::new(), counts: &rays };
+    let new_sampler = || Worker {
+        tracer: Tracer::new(scene, depth),
+        view,
+        rays: Vec::new(),
+        traced: Vec::new(),
+        counts: &rays,
+    };
     let picture = pool.install(|| picture(&part, width, options.aa, &new_sampler, progress));
     let estimated_rmse = picture.estimated_rmse();
     let Picture { colors, samples, errors, .. } = picture;
@@ -192,15 +198,22 @@ struct Worker<'a> {
     tracer: Tracer<'a>,
     view: View,
     rays: Vec<Ray>,
+    traced: Vec<trace::Sample>,
     counts: &'a Mutex<RayCounts>,
 }
 
 impl Sampler for Worker<'_> {
     fn sample(&mut self, places: &[DVec2], samples: &mut Vec<Sample>) {
-        for some in places.chunks(PACKET) {
+        for some in places.chunks(BATCH) {
             self.rays.clear();
             self.rays.extend(some.iter().map(|place| self.view.ray(*place)));
-            self.tracer.samples(&self.rays, samples);
+            self.tracer.trace(&self.rays, &mut self.traced);
+            samples.extend(self.traced.iter().map(|traced| Sample {
+                // A NaN, which no valid scene has, would be black.
+                color: traced.color.max(Rgb::ZERO).min(Rgb::ONE),
+                signature: traced.signature,
+                rays: traced.rays,
+            }));
         }
     }
 }

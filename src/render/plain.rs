@@ -6,15 +6,16 @@ use glam::DVec2;
 
 use super::{
     Picture,
-    crew::{Crew, Sampler, trace_centers},
+    crew::{Crew, Sampler, in_turn, trace_centers},
     look::Window,
     plane::{Area, Plane},
 };
 use crate::{
     aa::{
-        estimate::{Spread, grid_share, grid_unseen},
+        estimate::{Spread, bare_sequence_share, grid_share, grid_unseen, sequence_unseen},
         grid_places,
         levels::levels,
+        sobol::Sequence,
     },
     color::Rgb,
 };
@@ -24,7 +25,7 @@ const BATCH: usize = 64;
 
 /// One ray through each centre.
 pub(super) fn centers<S: Sampler>(crew: &Crew<S>, area: &Area) -> Picture {
-    let centers = trace_centers(crew, area, area);
+    let centers = trace_centers(crew, area);
     let errors = Mutex::new(Plane::new(*area, 0.0));
     crew.run(
         area,
@@ -57,22 +58,46 @@ struct Cell {
 
 /// A grid of `side` × `side` rays through each pixel.
 pub(super) fn grid<S: Sampler>(crew: &Crew<S>, area: &Area, side: u32) -> Picture {
+    let places = |x: i64, y: i64, places: &mut Vec<DVec2>| {
+        places.extend(grid_places(DVec2::new(x as f64, y as f64), side));
+    };
+    even(crew, area, side * side, places, (grid_share(side), grid_unseen(side)))
+}
+
+/// `count` rays of a sequence through each pixel of a picture `width` pixels wide.
+pub(super) fn sequence<S: Sampler>(crew: &Crew<S>, area: &Area, width: u32, count: u32) -> Picture {
+    let places = |x: i64, y: i64, places: &mut Vec<DVec2>| {
+        let sequence = Sequence::of_pixel(y as u64 * u64::from(width) + x as u64, 1);
+        let corner = DVec2::new(x as f64, y as f64);
+        places.extend((0..count).map(|point| corner + sequence.place(point)));
+    };
+    even(crew, area, count, places, (bare_sequence_share(count), sequence_unseen(count)))
+}
+
+/// `count` rays through each pixel at the places that `pixel_places` adds to a list; they leave the shares `share` of their
+/// variance and, where they are alike, `unseen` of the contrast to the neighbours.
+fn even<S: Sampler>(
+    crew: &Crew<S>,
+    area: &Area,
+    count: u32,
+    pixel_places: impl Fn(i64, i64, &mut Vec<DVec2>) + Sync,
+    (share, unseen): (f32, f32),
+) -> Picture {
     let cells = Mutex::new(Plane::new(*area, Cell::default()));
-    let count = (side * side) as usize;
+    let (rays, count) = (count, count as usize);
     let pixels_at_once = BATCH.div_ceil(count);
-    let share = grid_share(side);
     crew.run(
         area,
         true,
         || false,
         |sampler, scratch, tile| {
-            let mut own = Vec::with_capacity(tile.len());
-            let pixels: Vec<(i64, i64)> = tile.pixels().collect();
+            let mut own = vec![Cell::default(); tile.len()];
+            let pixels: Vec<(i64, i64)> = in_turn(tile).collect();
             for some in pixels.chunks(pixels_at_once) {
                 scratch.places.clear();
                 scratch.samples.clear();
                 for (x, y) in some {
-                    scratch.places.extend(grid_places(DVec2::new(*x as f64, *y as f64), side));
+                    pixel_places(*x, *y, &mut scratch.places);
                 }
                 sampler.sample(&scratch.places, &mut scratch.samples);
                 for ((x, y), samples) in some.iter().zip(scratch.samples.chunks(count)) {
@@ -83,12 +108,12 @@ pub(super) fn grid<S: Sampler>(crew: &Crew<S>, area: &Area, side: u32) -> Pictur
                         spread.add(sample.color, sample.signature);
                     }
                     let only = spread.only_signature();
-                    own.push(Cell {
+                    own[tile.place_of(*x, *y)] = Cell {
                         color: sum / count as f32,
                         error: spread.error(share),
                         signature: only.unwrap_or((x * 31 + y * 17) as u32),
                         alike: only.is_some(),
-                    });
+                    };
                 }
             }
             cells.lock().unwrap_or_else(PoisonError::into_inner).put(tile, own);
@@ -96,7 +121,6 @@ pub(super) fn grid<S: Sampler>(crew: &Crew<S>, area: &Area, side: u32) -> Pictur
     );
     let cells = cells.into_inner().unwrap_or_else(PoisonError::into_inner);
     let errors = Mutex::new(Plane::new(*area, 0.0));
-    let unseen = grid_unseen(side);
     crew.run(
         area,
         false,
@@ -119,7 +143,7 @@ pub(super) fn grid<S: Sampler>(crew: &Crew<S>, area: &Area, side: u32) -> Pictur
     );
     Picture {
         colors: cells.values().iter().map(|cell| cell.color).collect(),
-        samples: vec![side * side; area.len()],
+        samples: vec![rays; area.len()],
         errors: errors.into_inner().unwrap_or_else(PoisonError::into_inner).into_values(),
         factor: 1.0,
     }

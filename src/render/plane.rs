@@ -31,6 +31,19 @@ impl Area {
         (self.x0..self.x1).contains(&x) && (self.y0..self.y1).contains(&y)
     }
 
+    /// The place of a pixel, counted row by row.
+    #[inline]
+    pub(super) fn place_of(&self, x: i64, y: i64) -> usize {
+        debug_assert!(self.contains(x, y), "({x}, {y}) in {self:?}");
+        (y - self.y0) as usize * self.width() + (x - self.x0) as usize
+    }
+
+    /// The pixel at a place counted row by row.
+    pub(super) fn pixel_at(&self, place: usize) -> (i64, i64) {
+        let width = self.width();
+        (self.x0 + (place % width) as i64, self.y0 + (place / width) as i64)
+    }
+
     /// The area and `apron` pixels about it.
     pub(super) fn grown(&self, apron: i64) -> Self {
         Self { x0: self.x0 - apron, y0: self.y0 - apron, x1: self.x1 + apron, y1: self.y1 + apron }
@@ -79,19 +92,13 @@ impl<T> Plane<T> {
     }
 
     #[inline]
-    fn index(&self, x: i64, y: i64) -> usize {
-        debug_assert!(self.area.contains(x, y), "({x}, {y}) in {:?}", self.area);
-        (y - self.area.y0) as usize * self.area.width() + (x - self.area.x0) as usize
-    }
-
-    #[inline]
     pub(super) fn at(&self, x: i64, y: i64) -> &T {
-        &self.values[self.index(x, y)]
+        &self.values[self.area.place_of(x, y)]
     }
 
     #[inline]
     pub(super) fn at_mut(&mut self, x: i64, y: i64) -> &mut T {
-        let index = self.index(x, y);
+        let index = self.area.place_of(x, y);
         &mut self.values[index]
     }
 
@@ -113,7 +120,7 @@ impl<T> Plane<T> {
     pub(super) fn put(&mut self, tile: &Area, values: impl IntoIterator<Item = T>) {
         let mut values = values.into_iter();
         for y in tile.y0..tile.y1 {
-            let start = self.index(tile.x0, y);
+            let start = self.area.place_of(tile.x0, y);
             for (place, value) in
                 self.values[start..start + tile.width()].iter_mut().zip(values.by_ref())
             {
@@ -128,7 +135,7 @@ impl<T: Default> Plane<T> {
     pub(super) fn take(&mut self, tile: &Area) -> Vec<T> {
         let mut taken = Vec::with_capacity(tile.len());
         for y in tile.y0..tile.y1 {
-            let start = self.index(tile.x0, y);
+            let start = self.area.place_of(tile.x0, y);
             taken.extend(self.values[start..start + tile.width()].iter_mut().map(std::mem::take));
         }
         taken
