@@ -90,9 +90,9 @@ pub enum AaError {
 }
 
 impl Default for AntiAliasing {
-    /// Four rays per pixel, on a grid.
+    /// The adaptive mode.
     fn default() -> Self {
-        Self::Grid { side: 2 }
+        Self::ADAPTIVE
     }
 }
 

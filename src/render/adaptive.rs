@@ -2,13 +2,17 @@
 //!
 //! What becomes of a pixel depends on the samples within one pixel around it, and on nothing that other pixels decide.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{
+    Mutex, PoisonError,
+    atomic::{AtomicU64, Ordering},
+};
 
 use glam::DVec2;
 
 use super::{
-    Picture,
-    crew::{Crew, Sampler, in_turn, trace_centers},
+    Outcome, Picture,
+    crew::{Crew, Sampler, Scratch, in_turn, trace_centers},
+    goal::Demand,
     look::{Window, corrected},
     plane::{Area, Plane},
 };
@@ -16,7 +20,7 @@ use crate::{
     aa::{
         Sample,
         refined::{Refined, stages},
-        sobol::Sequence,
+        sobol::{Sequence, mix},
     },
     color::Rgb,
 };
@@ -29,6 +33,9 @@ pub(super) const STOPPED_LOW: f64 = 1.25;
 const SHARED_CORNERS: f32 = 0.6;
 const OWN_CORNERS: f32 = 1.5;
 
+/// Samples that are taken without looking at the clock.
+const AT_ONCE: usize = 512;
+
 /// When a pixel gets more rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Threshold {
@@ -36,6 +43,8 @@ pub(super) enum Threshold {
     Error(f32),
     /// Its squared error for each ray of the next stage is at least this.
     PerRay(f32),
+    /// The same, for a share of the pixels, picked by hash.
+    PerRayOfSome(f32, f32),
 }
 
 /// What is known of a pixel.
@@ -64,12 +73,15 @@ pub(super) struct Adaptive {
     pixels: Plane<Pixel>,
     colors: Plane<Rgb>,
     samples: Plane<u32>,
+    /// Rays of all kinds so far.
+    spent: AtomicU64,
 }
 
 impl Adaptive {
     /// Traces the centres of `area`, and of the pixels around it, so that a part of a picture is that of the whole.
     pub(super) fn new<S: Sampler>(crew: &Crew<S>, area: &Area, width: u32, most: u32) -> Self {
         let centers = trace_centers(crew, &area.grown(1));
+        let spent = centers.values().iter().map(|sample| u64::from(sample.rays)).sum();
         let colors = Mutex::new(Plane::new(*area, Rgb::ZERO));
         let pixels = Mutex::new(Plane::new(*area, Pixel::default()));
         crew.run(
@@ -109,6 +121,7 @@ impl Adaptive {
             pixels: pixels.into_inner().unwrap_or_else(PoisonError::into_inner),
             colors: colors.into_inner().unwrap_or_else(PoisonError::into_inner),
             samples: Plane::new(*area, 1),
+            spent: AtomicU64::new(spent),
         }
     }
 
@@ -119,9 +132,11 @@ impl Adaptive {
         &mut self,
         crew: &Crew<S>,
         threshold: Threshold,
+        counted: bool,
         stop: impl Fn() -> bool + Sync,
     ) {
         self.trace_corners(crew, threshold, &stop);
+        let spent = &self.spent;
         let (pixels, colors, samples) = (
             Mutex::new(&mut self.pixels),
             Mutex::new(&mut self.colors),
@@ -134,8 +149,9 @@ impl Adaptive {
             centers: &self.centers,
             corners: &self.corners,
             threshold,
+            stop: &stop,
         };
-        crew.run(&self.area, true, stop, |sampler, scratch, tile| {
+        crew.run(&self.area, counted, &stop, |sampler, scratch, tile| {
             let mut own = pixels.lock().unwrap_or_else(PoisonError::into_inner).take(tile);
             let mut changed = vec![false; own.len()];
             round.cross(tile, &mut own, &mut changed);
@@ -147,16 +163,8 @@ impl Adaptive {
                 if wanting.is_empty() {
                     break;
                 }
-                scratch.places.clear();
-                scratch.samples.clear();
-                for &index in &wanting {
-                    round.next_places(tile, index, &own[index], &mut scratch.places);
-                }
-                sampler.sample(&scratch.places, &mut scratch.samples);
-                let mut answers = scratch.samples.iter();
-                for &index in &wanting {
-                    round.advance(&mut own[index], &mut answers);
-                    changed[index] = true;
+                if !round.give(tile, &wanting, &mut own, &mut changed, (sampler, scratch), spent) {
+                    break;
                 }
             }
             if changed.contains(&true) {
@@ -192,6 +200,7 @@ impl Adaptive {
                 pixels.area().contains(x, y) && {
                     let pixel = pixels.at(x, y);
                     pixel.stage == 0
+                        && is_picked(threshold, x, y)
                         && (disputed || !pixel.suspect)
                         && wants_corners(pixel, centers.at(x, y), threshold)
                 }
@@ -215,6 +224,7 @@ impl Adaptive {
             sampler.sample(&scratch.places, &mut scratch.samples);
             let mut traced = traced.lock().unwrap_or_else(PoisonError::into_inner);
             let mut samples = samples.lock().unwrap_or_else(PoisonError::into_inner);
+            add_rays(&self.spent, &scratch.samples);
             for (&(x, y), sample) in wanted.iter().zip(&scratch.samples) {
                 traced.push((x, y, *sample));
                 if samples.area().contains(x, y) {
@@ -227,20 +237,53 @@ impl Adaptive {
         }
     }
 
-    /// The sum of the pixels' squared errors as they estimate them.
-    pub(super) fn squared_error(&self) -> f64 {
-        self.pixels.values().iter().map(|pixel| f64::from(pixel.error)).sum()
+    /// The estimated error: root mean square of all channels, in levels of 255.
+    pub(super) fn estimated_rmse(&self) -> f64 {
+        let sum: f64 = self.pixels.values().iter().map(|pixel| f64::from(pixel.error)).sum();
+        (STOPPED_LOW * sum / self.area.len().max(1) as f64).sqrt()
     }
 
-    /// Whether any pixel got all the rays it may get, and is still above the threshold.
-    pub(super) fn exhausted(&self, threshold: Threshold) -> usize {
-        let last = self.stages.len() + 1;
-        let limit = |pixel: &Pixel| match threshold {
-            Threshold::Error(limit) => pixel.error >= limit,
-            Threshold::PerRay(_) => true,
+    /// Rays of all kinds so far.
+    pub(super) fn spent(&self) -> u64 {
+        self.spent.load(Ordering::Relaxed)
+    }
+
+    /// The last stage that there is.
+    fn last_stage(&self) -> usize {
+        if self.stages.is_empty() { 0 } else { self.stages.len() + 1 }
+    }
+
+    /// Whether a pixel that is off may get more rays.
+    pub(super) fn can_improve(&self) -> bool {
+        let last = self.last_stage();
+        self.pixels.values().iter().any(|p| p.error > 0.0 && usize::from(p.stage) < last)
+    }
+
+    /// How many pixels got all the rays they may get, and have a squared error of at least `limit`.
+    pub(super) fn unsettled(&self, limit: f32) -> usize {
+        let last = self.last_stage();
+        let is_unsettled = |p: &&Pixel| {
+            usize::from(p.stage) >= last && is_above(Threshold::Error(limit), p.error, 0.0)
         };
-        let done = |pixel: &&Pixel| usize::from(pixel.stage) >= last && limit(pixel);
-        self.pixels.values().iter().filter(done).count()
+        self.pixels.values().iter().filter(is_unsettled).count()
+    }
+
+    /// What the next stages of all pixels are worth, and take.
+    pub(super) fn demand(&self) -> Demand {
+        let mut demand = Demand::new();
+        for ((x, y), pixel) in self.area.pixels().zip(self.pixels.values()) {
+            let each = self.centers.at(x, y).rays;
+            let rays = match (pixel.stage, &pixel.refined) {
+                (0, _) if !self.stages.is_empty() => corner_rays(pixel) * each as f32,
+                (stage @ 1.., Some(refined)) => match self.stages.get(usize::from(stage) - 1) {
+                    Some(points) => ((points - refined.points()) * each) as f32,
+                    None => continue,
+                },
+                _ => continue,
+            };
+            demand.add(pixel.error / rays, rays as u64);
+        }
+        demand
     }
 
     pub(super) fn into_picture(self) -> Picture {
@@ -248,6 +291,7 @@ impl Adaptive {
             colors: self.colors.into_values(),
             samples: self.samples.into_values(),
             errors: self.pixels.values().iter().map(|pixel| pixel.error).collect(),
+            outcome: Outcome::default(),
             factor: STOPPED_LOW,
         }
     }
@@ -264,13 +308,32 @@ fn is_disputed(centers: &Plane<Sample>, x: i64, y: i64) -> bool {
 fn is_above(threshold: Threshold, error: f32, rays: f32) -> bool {
     match threshold {
         Threshold::Error(limit) => error > 0.0 && error >= limit,
-        Threshold::PerRay(limit) => error >= limit * rays,
+        Threshold::PerRay(limit) | Threshold::PerRayOfSome(limit, _) => error >= limit * rays,
     }
 }
 
+/// Whether the threshold is for this pixel at all.
+fn is_picked(threshold: Threshold, x: i64, y: i64) -> bool {
+    match threshold {
+        Threshold::PerRayOfSome(_, share) if share < 1.0 => {
+            let hash = mix((x as u64) << 32 ^ y as u64 ^ 0xC0FF_EE00_C0FF_EE00) >> 40;
+            (hash as f32) < share * (1_u32 << 24) as f32
+        }
+        _ => true,
+    }
+}
+
+fn add_rays(spent: &AtomicU64, samples: &[Sample]) {
+    spent.fetch_add(samples.iter().map(|s| u64::from(s.rays)).sum(), Ordering::Relaxed);
+}
+
+/// Camera rays that the corners of a pixel are taken to cost.
+fn corner_rays(pixel: &Pixel) -> f32 {
+    if pixel.suspect { SHARED_CORNERS } else { OWN_CORNERS }
+}
+
 fn wants_corners(pixel: &Pixel, center: &Sample, threshold: Threshold) -> bool {
-    let corners = if pixel.suspect { SHARED_CORNERS } else { OWN_CORNERS };
-    is_above(threshold, pixel.error, corners * center.rays as f32)
+    is_above(threshold, pixel.error, corner_rays(pixel) * center.rays as f32)
 }
 
 /// What the pixels of a tile need to know to get their next samples.
@@ -281,6 +344,7 @@ struct Round<'a> {
     centers: &'a Plane<Sample>,
     corners: &'a Plane<Sample>,
     threshold: Threshold,
+    stop: &'a (dyn Fn() -> bool + Sync),
 }
 
 impl Round<'_> {
@@ -291,7 +355,10 @@ impl Round<'_> {
         }
         for (index, (x, y)) in tile.pixels().enumerate() {
             let (pixel, center) = (&mut pixels[index], self.centers.at(x, y));
-            if pixel.stage > 0 || !wants_corners(pixel, center, self.threshold) {
+            if pixel.stage > 0
+                || !is_picked(self.threshold, x, y)
+                || !wants_corners(pixel, center, self.threshold)
+            {
                 continue;
             }
             let corner = |(x, y): (i64, i64)| {
@@ -328,7 +395,42 @@ impl Round<'_> {
         };
         let (x, y) = tile.pixel_at(index);
         let rays = (points - refined.points()) * self.centers.at(x, y).rays;
-        is_above(self.threshold, pixel.error, rays as f32)
+        is_picked(self.threshold, x, y) && is_above(self.threshold, pixel.error, rays as f32)
+    }
+
+    /// Gives the pixels that want them the samples of their next stage; returns whether there was time for all.
+    fn give<S: Sampler>(
+        &self,
+        tile: &Area,
+        wanting: &[usize],
+        pixels: &mut [Pixel],
+        changed: &mut [bool],
+        (sampler, scratch): (&mut S, &mut Scratch),
+        spent: &AtomicU64,
+    ) -> bool {
+        let mut rest = wanting;
+        while !rest.is_empty() {
+            if (self.stop)() {
+                return false;
+            }
+            scratch.places.clear();
+            scratch.samples.clear();
+            let mut count = 0;
+            while count < rest.len() && scratch.places.len() < AT_ONCE {
+                self.next_places(tile, rest[count], &pixels[rest[count]], &mut scratch.places);
+                count += 1;
+            }
+            sampler.sample(&scratch.places, &mut scratch.samples);
+            add_rays(spent, &scratch.samples);
+            let mut answers = scratch.samples.iter();
+            let (now, later) = rest.split_at(count);
+            for &index in now {
+                self.advance(&mut pixels[index], &mut answers);
+                changed[index] = true;
+            }
+            rest = later;
+        }
+        true
     }
 
     fn next_places(&self, tile: &Area, index: usize, pixel: &Pixel, places: &mut Vec<DVec2>) {

@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod crew;
+mod goal;
 mod look;
 mod plain;
 mod plane;
@@ -9,7 +10,7 @@ mod plane;
 use std::{
     num::NonZeroUsize,
     sync::{Mutex, PoisonError},
-    time::Instant,
+    time::{Duration, Instant},
 };
 
 use glam::DVec2;
@@ -40,8 +41,42 @@ pub struct RenderOptions {
     pub aa: AntiAliasing,
     /// The deepest level of recursion, instead of the scene's; camera rays have level 1.
     pub depth: Option<u32>,
+    /// The part of the picture that is wanted, instead of all of it.
+    pub crop: Option<Tile>,
+    /// What the adaptive mode aims at, instead of an error in each pixel.
+    pub goal: Goal,
     /// How many threads work; all cores by default. The picture is the same for any number.
     pub threads: Option<NonZeroUsize>,
+}
+
+/// What a render aims at.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Goal {
+    /// What the anti-aliasing mode says of each pixel.
+    #[default]
+    Mode,
+    /// An estimated error of the part that is rendered: root mean square of all channels, in levels of 255. Rays go where they
+    /// reduce it most. Needs the adaptive mode, whose own error is not minded.
+    Error(f64),
+    /// The least error until then, but one ray in each pixel at least. Needs the adaptive mode, whose own error is not minded.
+    /// How far it gets depends on the machine, so this picture is not the same every time.
+    Until(Instant),
+}
+
+/// How a render ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Outcome {
+    /// The squared error in levels for each ray, of the pixel's next stage, at which pixels stopped, if the goal was an error:
+    /// the same value gives the same pixels, whatever part is rendered.
+    pub per_ray: Option<f32>,
+    /// The error that was wanted but not reached.
+    pub missed_error: Option<f64>,
+    /// Pixels that got all the rays they may get but did not settle, if that was the goal.
+    pub unsettled: usize,
+    /// How long one ray in each pixel took, if the time was up by then.
+    pub late: Option<Duration>,
+    /// Whether the clock decided what was refined.
+    pub cut: bool,
 }
 
 /// How far a render is.
@@ -63,6 +98,8 @@ pub struct Rendering {
     /// The picture's estimated error against the exact average over each pixel: root mean square of all channels, in levels of
     /// 255.
     pub estimated_rmse: f64,
+    /// How it ended.
+    pub outcome: Outcome,
     /// The rays cast.
     pub rays: RayCounts,
     /// The threads used.
@@ -85,6 +122,19 @@ pub enum RenderError {
         /// The system's reason.
         source: rayon::ThreadPoolBuildError,
     },
+    /// The part that is wanted is empty or not in the picture.
+    #[error(
+        "the part from ({}, {}) to ({}, {}) is not in a picture of {width}x{height} pixels, or empty",
+        part.x0, part.y0, part.x1, part.y1
+    )]
+    Crop {
+        /// The part.
+        part: Tile,
+        /// Pixels in a row of the picture.
+        width: u32,
+        /// Rows of the picture.
+        height: u32,
+    },
 }
 
 /// A picture before it is a film.
@@ -96,6 +146,8 @@ pub struct Picture {
     pub samples: Vec<u32>,
     /// The estimated squared error of each pixel, in levels of 255.
     pub errors: Vec<f32>,
+    /// How it ended.
+    pub outcome: Outcome,
     /// What the mean of `errors` is to be multiplied by.
     factor: f64,
 }
@@ -115,6 +167,7 @@ pub fn picture<S: Sampler>(
     part: &Tile,
     width: u32,
     aa: AntiAliasing,
+    goal: Goal,
     new_sampler: &(dyn Fn() -> S + Sync),
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Picture {
@@ -122,6 +175,7 @@ pub fn picture<S: Sampler>(
     let ((x0, y0), (x1, y1)) = (corner(part.x0, part.y0), corner(part.x1, part.y1));
     let area = Area { x0, y0, x1, y1 };
     let pixels = area.len() as u64;
+    let started = Instant::now();
     match aa {
         AntiAliasing::None | AntiAliasing::Grid { side: 1 } => {
             let meter = Meter::new(pixels, progress);
@@ -140,9 +194,17 @@ pub fn picture<S: Sampler>(
             let crew = Crew { new_sampler, meter: &meter };
             let mut adaptive = Adaptive::new(&crew, &area, width, most);
             meter.reach(0.5);
-            adaptive.refine(&crew, Threshold::Error(error * error), || false);
+            let outcome = match goal {
+                Goal::Mode => {
+                    adaptive.refine(&crew, Threshold::Error(error * error), true, || false);
+                    let unsettled = adaptive.unsettled(error * error);
+                    Outcome { unsettled, ..Outcome::default() }
+                }
+                Goal::Error(wanted) => goal::reach_error(&mut adaptive, &crew, wanted),
+                Goal::Until(end) => goal::reach_time(&mut adaptive, &crew, started, end),
+            };
             meter.reach(1.0);
-            adaptive.into_picture()
+            Picture { outcome, ..adaptive.into_picture() }
         }
     }
 }
@@ -170,7 +232,10 @@ pub fn render(
         .map_err(|source| RenderError::Threads { threads, source })?;
 
     let view = scene.camera().view(width, height);
-    let part = Tile { x0: 0, y0: 0, x1: width, y1: height };
+    let part = options.crop.unwrap_or(Tile { x0: 0, y0: 0, x1: width, y1: height });
+    if part.x0 >= part.x1 || part.y0 >= part.y1 || part.x1 > width || part.y1 > height {
+        return Err(RenderError::Crop { part, width, height });
+    }
     let rays = Mutex::new(RayCounts::default());
     let new_sampler = || Worker {
         tracer: Tracer::new(scene, depth),
@@ -179,13 +244,15 @@ pub fn render(
         traced: Vec::new(),
         counts: &rays,
     };
-    let picture = pool.install(|| picture(&part, width, options.aa, &new_sampler, progress));
+    let picture =
+        pool.install(|| picture(&part, width, options.aa, options.goal, &new_sampler, progress));
     let estimated_rmse = picture.estimated_rmse();
-    let Picture { colors, samples, errors, .. } = picture;
+    let Picture { colors, samples, errors, outcome, .. } = picture;
     Ok(Rendering {
         film: Film::from_parts(part.width(), part.height(), colors, samples),
         errors,
         estimated_rmse,
+        outcome,
         rays: rays.into_inner().unwrap_or_else(PoisonError::into_inner),
         threads,
         seconds: started.elapsed().as_secs_f64(),

@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 use glam::DVec2;
 
 use super::{
-    Picture,
+    Outcome, Picture,
     crew::{Crew, Sampler, in_turn, trace_centers},
     look::Window,
     plane::{Area, Plane},
@@ -42,6 +42,7 @@ pub(super) fn centers<S: Sampler>(crew: &Crew<S>, area: &Area) -> Picture {
         colors: centers.into_values().into_iter().map(|sample| sample.color).collect(),
         samples: vec![1; area.len()],
         errors: errors.into_inner().unwrap_or_else(PoisonError::into_inner).into_values(),
+        outcome: Outcome::default(),
         factor: 1.0,
     }
 }
@@ -145,6 +146,7 @@ fn even<S: Sampler>(
         colors: cells.values().iter().map(|cell| cell.color).collect(),
         samples: vec![rays; area.len()],
         errors: errors.into_inner().unwrap_or_else(PoisonError::into_inner).into_values(),
+        outcome: Outcome::default(),
         factor: 1.0,
     }
 }
