@@ -30,8 +30,26 @@ use build::Division;
 use crossed::Crossed;
 use query::Nearest;
 pub use simd::Isa;
-use simd::dispatch;
+use simd::{Kernel, Simd, dispatch};
 use tree::Tree;
+
+/// What [`Accel::run`] runs.
+pub(crate) trait Work {
+    /// Must be `#[inline(always)]`, and so must what it calls; else that is compiled for the baseline.
+    fn run(self);
+}
+
+/// Work as a kernel that needs no lanes.
+struct Run<W>(W);
+
+impl<W: Work> Kernel for Run<W> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) {
+        self.0.run();
+    }
+}
 
 /// The primitives of a scene, arranged so that a ray finds those it meets without trying all.
 #[derive(Debug)]
@@ -108,6 +126,12 @@ impl Accel {
     /// The instructions that queries use.
     pub fn isa(&self) -> Isa {
         self.isa
+    }
+
+    /// Runs `work` compiled for the instructions that queries use, so that its fused multiply-adds are instructions too.
+    #[inline(always)]
+    pub(crate) fn run<W: Work>(&self, work: W) {
+        dispatch(self.isa, Run(work));
     }
 
     /// The nearest hit with `0 < t < end`; of equal ones, that of the lowest primitive.

@@ -9,6 +9,8 @@ pub mod desc;
 pub mod error;
 pub mod generators;
 pub mod load;
+#[cfg(test)]
+mod tests;
 
 use std::{ops::ControlFlow, time::Instant};
 
@@ -187,6 +189,7 @@ impl Scene {
         self.accel.shape(primitive)
     }
 
+    #[inline(always)]
     pub(crate) fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         self.shape(hit.primitive).surface(ray, hit)
     }

@@ -64,6 +64,7 @@ impl Image {
     ///
     /// Bilinear between the four texels around the place, whose centres lie half a texel inside the picture; beyond the
     /// outermost centres the edge goes on.
+    #[inline(always)]
     pub fn sample(&self, uv: DVec2) -> Rgb {
         let x = uv.x * self.width as f64 - 0.5;
         let y = (1.0 - uv.y) * self.height as f64 - 0.5;

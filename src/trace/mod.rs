@@ -12,6 +12,7 @@ mod signature;
 mod sum;
 
 use crate::{
+    accel::Work,
     color::Rgb,
     geometry::{Hit, Ray, Surface, reflect, refract},
     light::Light,
@@ -129,7 +130,7 @@ impl<'a> Tracer<'a> {
             self.tasks.extend(rays.iter().zip(0..).map(camera));
         }
         while self.take_batch() {
-            self.trace_batch();
+            self.scene.accel().run(Batch(self));
         }
         samples.clear();
         let sample =
@@ -151,6 +152,7 @@ impl<'a> Tracer<'a> {
         true
     }
 
+    #[inline(always)]
     fn trace_batch(&mut self) {
         self.rays.clear();
         self.rays.extend(self.batch.iter().map(|task| task.ray));
@@ -181,6 +183,7 @@ impl<'a> Tracer<'a> {
         self.show();
     }
 
+    #[inline(always)]
     fn gather(&mut self, task: &Task, light: Rgb, signature: u32) {
         let gathered = &mut self.gathered[task.sample as usize];
         gathered.rays += 1;
@@ -189,6 +192,7 @@ impl<'a> Tracer<'a> {
     }
 
     /// Puts what comes to a hit by reflection and transmission on the list, and the hit itself among those to be lit.
+    #[inline(always)]
     fn meet(&mut self, task: &Task, hit: &Hit) {
         let scene = self.scene;
         let surface = scene.surface(&task.ray, hit);
@@ -221,6 +225,7 @@ impl<'a> Tracer<'a> {
         });
     }
 
+    #[inline(always)]
     fn transmit(
         &mut self,
         task: &Task,
@@ -267,6 +272,7 @@ impl<'a> Tracer<'a> {
     }
 
     /// Adds what one light gives to the hits of the batch that face it.
+    #[inline(always)]
     fn add_light(&mut self, light: &Light) {
         self.shadows.clear();
         for (lit, index) in self.lit.iter().zip(0..) {
@@ -304,6 +310,7 @@ impl<'a> Tracer<'a> {
     }
 
     /// Gives the colours of the lit hits to their samples.
+    #[inline(always)]
     fn show(&mut self) {
         while let Some(lit) = self.lit.pop() {
             let Lit { material, mut path, .. } = lit;
@@ -316,6 +323,16 @@ impl<'a> Tracer<'a> {
             }
             self.gather(&lit.task, light, path.signature());
         }
+    }
+}
+
+/// The batch that a tracer has taken, to be traced.
+struct Batch<'t, 'a>(&'t mut Tracer<'a>);
+
+impl Work for Batch<'_, '_> {
+    #[inline(always)]
+    fn run(self) {
+        self.0.trace_batch();
     }
 }
 
