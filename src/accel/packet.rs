@@ -58,9 +58,9 @@ impl Eight {
 
     fn set(&mut self, lane: usize, ray: &TreeRay, limit: f32) {
         let inverse = ray.inverse();
-        for axis in 0..3 {
-            self.inverse[axis][lane] = inverse[axis];
-            self.offset[axis][lane] = ray.origin[axis] * inverse[axis];
+        for (axis, inverse) in inverse.into_iter().enumerate() {
+            self.inverse[axis][lane] = inverse;
+            self.offset[axis][lane] = ray.origin[axis] * inverse;
         }
         self.limit[lane] = limit;
     }

@@ -4,10 +4,7 @@
 //! Everything here is what the program itself does *not* do: it accepts what a single-precision test says, and
 //! ignores whatever is nearer than a fixed epsilon.
 
-use std::{
-    ops::ControlFlow,
-    sync::atomic::{AtomicU8, AtomicU64, Ordering},
-};
+use std::sync::atomic::{AtomicU8, AtomicU64, Ordering};
 
 use glam::{DVec3, Vec3};
 

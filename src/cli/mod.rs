@@ -1,6 +1,7 @@
 //! The command line: the only code that prints, exits, or knows clap.
 
 mod args;
+mod compare;
 mod failure;
 mod memory;
 mod progress;
@@ -8,6 +9,7 @@ mod render;
 mod scenes;
 mod stats;
 mod streams;
+mod study;
 
 use std::process::ExitCode;
 use std::time::Instant;
@@ -23,6 +25,8 @@ pub(crate) fn run() -> ExitCode {
     let done = match Args::try_parse() {
         Ok(args) => match &args.command {
             Command::Render(args) => render::run(args, started),
+            Command::Compare(args) => compare::run(args),
+            Command::Study(args) => study::run(args),
             Command::Scenes => scenes::run(),
         },
         Err(error) if error.use_stderr() => Err(Failure::from_clap(&error)),

@@ -47,7 +47,7 @@ fn check(name: &str, accel: &Accel, rays: &[Ray]) -> usize {
             Some(back)
         })
         .collect();
-    for opaque in [|_: u32| false, |number: u32| number % 5 == 0, |_: u32| true] {
+    for opaque in [|_: u32| false, |number: u32| number.is_multiple_of(5), |_: u32| true] {
         let mut found = vec![Vec::new(); back.len()];
         let mut blocked = vec![false; back.len()];
         let visit = |k: u32, primitive, crossing: crate::geometry::Crossing| {
