@@ -2,6 +2,7 @@
 
 mod args;
 mod failure;
+mod inspect;
 mod memory;
 mod progress;
 mod render;
@@ -23,6 +24,7 @@ pub(crate) fn run() -> ExitCode {
     let done = match Args::try_parse() {
         Ok(args) => match &args.command {
             Command::Render(args) => render::run(args, started),
+            Command::Inspect(args) => inspect::run(args),
             Command::Scenes => scenes::run(),
         },
         Err(error) if error.use_stderr() => Err(Failure::from_clap(&error)),

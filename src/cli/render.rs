@@ -7,10 +7,10 @@ use std::time::Instant;
 use anyhow::{Context, anyhow};
 use whitted::film::{FileError, Film, OutputFile, WholeFile, encode};
 use whitted::render::{RenderOptions, Rendering};
-use whitted::scene::{Scene, load_builtin};
+use whitted::scene::{LoadOptions, Loaded, Scene};
 
 use super::args::{ProgressMode, RenderArgs};
-use super::failure::Failure;
+use super::failure::{Failure, warn};
 use super::progress::Reporter;
 use super::stats::{Seconds, Statistics};
 use super::{memory, streams};
@@ -18,7 +18,15 @@ use super::{memory, streams};
 /// Renders as `args` say; `started` is when the program did.
 pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
     let loading = Instant::now();
-    let scene = load_builtin(&args.scene)?;
+    let load_options = LoadOptions {
+        models: args.models.clone(),
+        eye: args.eye,
+        look_at: args.look_at,
+        up: args.up,
+        fov: args.fov,
+    };
+    let Loaded { scene, warnings } = whitted::scene::load(&args.scene, &load_options)?;
+    warn(&warnings, args.strict, args.quiet)?;
     let build = scene.bvh_stats().build_seconds;
     let load = (loading.elapsed().as_secs_f64() - build).max(0.0);
 

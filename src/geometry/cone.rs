@@ -26,7 +26,7 @@
 //! the last component of its code; then n is not a unit vector and does not turn with the point. At the apex, where
 //! there is no normal, the axis is taken.
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use super::{
     Bounds, Ends, Similarity,
@@ -239,7 +239,7 @@ impl Cone {
         let point = self.apex + self.frame.to_world(q);
         let normal = self.frame.to_world(normal);
         let error = Surface::error_bound(normal, point.abs() + self.radius + self.height);
-        Surface { point, normal, local: q, error, uv: DVec2::ZERO }
+        Surface { local: q, ..Surface::plain(point, normal, error) }
     }
 
     /// The point of the side nearest to `q`.

@@ -63,6 +63,16 @@ fn permuted(v: DVec3, axis: u8) -> DVec3 {
 /// A ray in the plane is a miss: a closed surface has other faces to be hit there.
 #[inline(always)]
 pub(super) fn crossing(vertices: &[DVec3], normal: DVec3, ray: &Ray) -> Crossing {
+    crossing_of(vertices, || normal, ray)
+}
+
+/// As [`crossing`], for a shape that makes its normal, of any length, only when the ray is known to pass the edges.
+#[inline(always)]
+pub(super) fn crossing_of(
+    vertices: &[DVec3],
+    normal: impl FnOnce() -> DVec3,
+    ray: &Ray,
+) -> Crossing {
     let shear = Shear::along(ray.dir);
     let seen = |v: &DVec3| shear.project(*v - ray.origin);
     let mut last = seen(&vertices[vertices.len() - 1]);
@@ -77,6 +87,7 @@ pub(super) fn crossing(vertices: &[DVec3], normal: DVec3, ray: &Ray) -> Crossing
     if left == right {
         return Crossing::NONE; // on different sides of two edges, or the outline is seen edge-on
     }
+    let normal = normal();
     let t = dot(normal, vertices[0] - ray.origin) / dot(normal, ray.dir);
     if t.is_finite() { Crossing::at(t) } else { Crossing::NONE }
 }
@@ -87,7 +98,7 @@ pub(super) fn surface(vertex: DVec3, normal: DVec3, ray: &Ray, t: f64) -> Surfac
     let near = ray.at(t);
     let point = near - normal * dot(normal, near - vertex);
     let error = Surface::error_bound(normal, point.abs() + (point - vertex).abs());
-    Surface { point, normal, local: point - vertex, error, uv: DVec2::ZERO }
+    Surface { local: point - vertex, ..Surface::plain(point, normal, error) }
 }
 
 /// The dot product with a rounding less a term than the plain one.

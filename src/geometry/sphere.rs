@@ -90,6 +90,7 @@ impl Sphere {
         let local = normal * self.radius;
         let point = self.center + local;
         let error = Surface::error_bound(normal, point.abs() + self.radius);
-        Surface { point, normal, local, error, uv: DVec2::new(normal.x, normal.y) * 0.5 + 0.5 }
+        let uv = DVec2::new(normal.x, normal.y) * 0.5 + 0.5;
+        Surface { local, uv, ..Surface::plain(point, normal, error) }
     }
 }

@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use super::obj::ModelError;
 use crate::{camera::CameraError, geometry::ShapeError, texture::ImageTextureError};
 
 /// Why there is no scene to render.
@@ -24,6 +25,17 @@ pub enum SceneError {
         /// What is wrong, with line and column.
         source: Box<toml::de::Error>,
     },
+    /// The argument is neither a built-in scene nor a file of a known kind.
+    #[error("unknown scene `{name}`: no built-in scene ({known}), and no .obj file")]
+    UnknownFile {
+        /// What was asked for.
+        name: String,
+        /// The built-in scenes.
+        known: String,
+    },
+    /// A model cannot be used.
+    #[error(transparent)]
+    Model(#[from] ModelError),
     /// An object uses a material that is not defined.
     #[error("object {object} uses material `{material}`, which is not defined (known: {known})")]
     UnknownMaterial {

@@ -10,6 +10,7 @@ use glam::DVec3;
 use super::{
     desc::{EndsDesc, MaterialDesc, SceneDesc, ShapeDesc, TextureDesc},
     error::SceneError,
+    parts::{CameraPlan, Parts},
 };
 use crate::{
     color::{Rgb, from_srgb},
@@ -25,18 +26,18 @@ use crate::{
 /// How the picture of a texture is found by its name.
 pub type ImageSource<'a> = dyn FnMut(&str) -> Result<Image, SceneError> + 'a;
 
-/// The parts of a scene in its own coordinates.
-pub(super) struct Parts {
-    pub(super) shapes: Vec<Shape>,
-    /// The material of each shape, as a place in `materials`.
-    pub(super) material_of: Vec<u32>,
-    pub(super) materials: Vec<Material>,
-    pub(super) lights: Vec<Light>,
-    pub(super) background: Rgb,
-}
-
 impl Parts {
-    pub(super) fn try_new(desc: &SceneDesc, images: &mut ImageSource) -> Result<Self, SceneError> {
+    /// The parts of a description; `images` finds the pictures of its textures.
+    ///
+    /// # Errors
+    /// What is wrong with the description.
+    pub fn try_new(desc: &SceneDesc, images: &mut ImageSource) -> Result<Self, SceneError> {
+        for (name, value) in
+            [("resolution", desc.resolution[0].min(desc.resolution[1])), ("depth", desc.depth)]
+        {
+            let range = "at least 1";
+            check("scene", name, f64::from(value), range, value >= 1)?;
+        }
         let textures = textures(&desc.texture, images)?;
         let mut materials = Vec::new();
         let mut number_of = HashMap::new();
@@ -64,7 +65,22 @@ impl Parts {
             shapes.extend(made);
         }
         let background = color("scene", "background", desc.background)?;
-        Ok(Self { shapes, material_of, materials, lights: lights(desc)?, background })
+        Ok(Self {
+            resolution: desc.resolution,
+            depth: desc.depth,
+            camera: CameraPlan {
+                eye: DVec3::from_array(desc.camera.eye),
+                look_at: DVec3::from_array(desc.camera.look_at),
+                up: DVec3::from_array(desc.camera.up),
+                vertical_fov: desc.camera.vertical_fov,
+            },
+            shapes,
+            material_of,
+            meshes: Vec::new(),
+            materials,
+            lights: lights(desc)?,
+            background,
+        })
     }
 }
 

@@ -8,23 +8,32 @@ pub mod builtin;
 pub mod desc;
 pub mod error;
 pub mod load;
+pub mod obj;
+pub mod open;
+mod parts;
+mod stage;
+pub mod text;
+mod warning;
 
-use std::{ops::ControlFlow, time::Instant};
+use std::{ops::ControlFlow, sync::Arc, time::Instant};
 
 pub use self::{
     builtin::{Builtin, builtins, load_builtin},
     desc::SceneDesc,
     error::SceneError,
+    open::{LoadOptions, Loaded, ModelPlace, load},
+    parts::{CameraPlan, MeshPart, Parts},
+    warning::Warning,
 };
 use crate::{
     accel::Accel,
     camera::Camera,
     color::Rgb,
-    geometry::{Bounds, Hit, Ray, Shape, Similarity, Surface},
+    geometry::{Hit, Ray, Shape, Similarity, Surface},
     light::Light,
     material::Material,
 };
-use load::{ImageSource, Parts};
+use load::ImageSource;
 
 /// A scene, ready to trace.
 #[derive(Debug)]
@@ -64,41 +73,37 @@ impl Scene {
         desc: &SceneDesc,
         images: &mut ImageSource,
     ) -> Result<Self, SceneError> {
-        for (parameter, value) in
-            [("resolution", desc.resolution[0].min(desc.resolution[1])), ("depth", desc.depth)]
-        {
-            if value == 0 {
-                let place = "scene".to_owned();
-                return Err(SceneError::Value {
-                    place,
-                    name: parameter,
-                    value: 0.0,
-                    range: "at least 1",
-                });
-            }
-        }
-        let desc_camera = &desc.camera;
-        let [eye, look_at, up] =
-            [desc_camera.eye, desc_camera.look_at, desc_camera.up].map(glam::DVec3::from_array);
-        let camera = Camera::try_new(eye, look_at, up, desc_camera.vertical_fov)?;
-        let Parts { shapes, material_of, materials, lights, background } =
-            Parts::try_new(desc, images)?;
+        Self::assemble(name, Parts::try_new(desc, images)?)
+    }
 
-        let bounds = shapes.iter().fold(Bounds::EMPTY, |b, s| b.union(s.bounds()));
+    /// The scene of checked parts.
+    ///
+    /// # Errors
+    /// A camera that sees nothing.
+    pub fn assemble(name: &str, parts: Parts) -> Result<Self, SceneError> {
+        let camera = parts.camera.camera()?;
+        let bounds = parts.bounds();
         let mut points = Vec::new();
-        for shape in &shapes {
+        for shape in &parts.shapes {
             shape.for_each_point(|p| points.push(p));
         }
-        let map = Similarity::normalizing(&bounds, points.into_iter());
-        let shapes = shapes.iter().map(|shape| shape.mapped(&map)).collect();
+        let on_meshes = parts.meshes.iter().flat_map(|part| part.mesh.vertices());
+        let map = Similarity::normalizing(&bounds, points.into_iter().chain(on_meshes.copied()));
+        let Parts { resolution, depth, shapes, mut material_of, materials, lights, .. } = parts;
+        let mut shapes: Vec<Shape> = shapes.iter().map(|shape| shape.mapped(&map)).collect();
+        for MeshPart { mesh, material_of: of_faces } in parts.meshes {
+            let mesh = Arc::new(mesh.mapped(&map));
+            shapes.extend(mesh.faces().map(Shape::from));
+            material_of.extend(of_faces);
+        }
         let building = Instant::now();
         let accel = Accel::build(shapes);
         Ok(Self {
             name: name.to_owned(),
-            resolution: desc.resolution,
-            depth: desc.depth,
+            resolution,
+            depth,
             camera: camera.mapped(&map),
-            background,
+            background: parts.background,
             lights: lights
                 .iter()
                 .map(|l| Light { position: map.point(l.position), ..*l })

@@ -8,6 +8,8 @@ pub mod shadow;
 
 use std::ops::{Add, Sub};
 
+use glam::DVec3;
+
 use crate::{
     color::Rgb,
     geometry::{Hit, Ray, Surface},
@@ -135,8 +137,7 @@ impl<'a> Tracer<'a> {
             }
         }
         if material.reflection > 0.0 && task.level < self.depth {
-            let normal = if outside { surface.normal } else { -surface.normal };
-            let ray = surface.leave(hit, reflect(task.ray.dir, normal), !outside);
+            let ray = surface.leave(hit, mirrored(task.ray.dir, &surface, outside), !outside);
             self.counts.reflected += 1;
             self.push(ray, task, Rgb::splat(material.reflection));
         }
@@ -152,7 +153,8 @@ impl<'a> Tracer<'a> {
         material: &Material,
         outside: bool,
     ) -> Rgb {
-        let normal = if outside { surface.normal } else { -surface.normal };
+        let normal = if outside { surface.shading } else { -surface.shading };
+        let offset = self.scene.shape(hit.primitive).shadow_offset(surface, !outside);
         let (mut diffuse, mut specular) = (Rgb::splat(material.ambient), Rgb::ZERO);
         for light in self.scene.lights() {
             let mut shadow = surface.leave(hit, light.position - surface.point, !outside);
@@ -162,6 +164,9 @@ impl<'a> Tracer<'a> {
                 continue;
             }
             self.counts.shadow += 1;
+            if offset != DVec3::ZERO {
+                shadow.origin += offset;
+            }
             shadow.dir = light.position - shadow.origin; // so that the light is at t = 1
             let arriving = light.intensity * self.shadows.transmittance(&shadow);
             if arriving == Rgb::ZERO {
@@ -180,7 +185,7 @@ impl<'a> Tracer<'a> {
             return specular;
         }
         let at = TexturePoint { uv: surface.uv, point: surface.point };
-        diffuse * material.texture.color(&at) * material.opacity + specular
+        diffuse * material.texture.color(&at) * surface.tint * material.opacity + specular
     }
 
     fn transmit(
@@ -198,9 +203,8 @@ impl<'a> Tracer<'a> {
         let (count, onward) = if material.ior == 1.0 {
             (&mut self.counts.transmitted, dir)
         } else {
-            let normal = if outside { surface.normal } else { -surface.normal };
             let (from, to) = if outside { (1.0, material.ior) } else { (material.ior, 1.0) };
-            match refract(dir, normal, from, to) {
+            match refracted(dir, surface, outside, from, to) {
                 Some(refracted) => (&mut self.counts.refracted, refracted),
                 None => return, // total reflection transmits nothing
             }
@@ -212,4 +216,27 @@ impl<'a> Tracer<'a> {
     fn push(&mut self, ray: Ray, parent: &Task, weight: Rgb) {
         self.tasks.push(Task { ray, weight: parent.weight * weight, level: parent.level + 1 });
     }
+}
+
+/// The mirror direction of `dir` by the shading normal. Where that points below the surface, as it may at a grazing view
+/// of a coarse mesh, it is mirrored up again.
+fn mirrored(dir: DVec3, surface: &Surface, outside: bool) -> DVec3 {
+    let side = if outside { 1.0 } else { -1.0 };
+    let onward = reflect(dir, surface.shading * side);
+    if surface.shading != surface.normal && !(onward.dot(surface.normal) * side > 0.0) {
+        return reflect(onward, surface.normal * side);
+    }
+    onward
+}
+
+/// The refracted direction by the shading normal, or by the surface's own where the other faces away from the ray or
+/// sends it back to its side; `None` if it is totally reflected.
+fn refracted(dir: DVec3, surface: &Surface, outside: bool, from: f64, to: f64) -> Option<DVec3> {
+    let side = if outside { 1.0 } else { -1.0 };
+    let (normal, shading) = (surface.normal * side, surface.shading * side);
+    if shading == normal || !(dir.dot(shading) < 0.0) {
+        return refract(dir, normal, from, to);
+    }
+    let onward = refract(dir, shading, from, to)?;
+    if onward.dot(normal) < 0.0 { Some(onward) } else { refract(dir, normal, from, to) }
 }

@@ -1,0 +1,133 @@
+//! From what the user names to a scene: built-in scenes, model files, models added to either.
+
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+
+use super::{
+    Scene,
+    builtin::{self, builtins},
+    error::SceneError,
+    obj::{self, Model, ModelError},
+    parts::{CameraPlan, Parts, Placement},
+    stage,
+    warning::Warning,
+};
+use crate::geometry::MeshError;
+
+/// What the user may change about a scene before it is built.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LoadOptions {
+    /// Models to add.
+    pub models: Vec<ModelPlace>,
+    /// Where the camera is, instead of where the scene has it.
+    pub eye: Option<DVec3>,
+    /// What is in the middle of the picture.
+    pub look_at: Option<DVec3>,
+    /// Which direction is up: in the picture, and for a model that comes alone also in its own space.
+    pub up: Option<DVec3>,
+    /// The vertical field of view in degrees.
+    pub fov: Option<f64>,
+}
+
+/// A model to add to a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelPlace {
+    /// The OBJ file.
+    pub path: PathBuf,
+    /// Where the middle of its lowest side stands; on the floor in front of the scene's middle if not given.
+    pub at: Option<DVec3>,
+    /// The length of its largest side; a fitting one if not given.
+    pub size: Option<f64>,
+}
+
+/// A scene, and what was odd about its files.
+#[derive(Debug)]
+pub struct Loaded {
+    /// The scene.
+    pub scene: Scene,
+    /// What was odd.
+    pub warnings: Vec<Warning>,
+}
+
+/// The scene that `name` means: the built-in one of that name, or the file.
+///
+/// # Errors
+/// There is no such scene, or what is wrong with it.
+pub fn load(name: &str, options: &LoadOptions) -> Result<Loaded, SceneError> {
+    let mut warnings = Vec::new();
+    let (short, mut parts) = if let Some(found) = builtins().iter().find(|b| b.name == name) {
+        (name.to_owned(), Parts::try_new(&found.desc()?, &mut builtin::picture)?)
+    } else {
+        let path = Path::new(name);
+        let kind = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+        let parts = if let Some("obj") = kind.as_deref() {
+            model_alone(path, options, &mut warnings)?
+        } else {
+            let known = builtins().iter().map(|b| b.name).collect::<Vec<_>>().join(", ");
+            return Err(SceneError::UnknownFile { name: name.to_owned(), known });
+        };
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        (stem, parts)
+    };
+    for place in &options.models {
+        add(&mut parts, place, &mut warnings)?;
+    }
+    let CameraPlan { eye, look_at, up, vertical_fov } = &mut parts.camera;
+    for (ours, users) in [(eye, options.eye), (look_at, options.look_at), (up, options.up)] {
+        if let Some(value) = users {
+            *ours = value;
+        }
+    }
+    if let Some(fov) = options.fov {
+        *vertical_fov = fov;
+    }
+    Ok(Loaded { scene: Scene::assemble(&short, parts)?, warnings })
+}
+
+fn model_alone(
+    path: &Path,
+    options: &LoadOptions,
+    warnings: &mut Vec<Warning>,
+) -> Result<Parts, SceneError> {
+    let mut model = obj::load_model(path)?;
+    warnings.append(&mut model.warnings);
+    let up = options.up.filter(|up| up.is_finite()).unwrap_or(DVec3::Y);
+    stage::stage(model, up, options.fov).map_err(|source| SceneError::Shape {
+        object: 1,
+        kind: "floor",
+        source,
+    })
+}
+
+fn add(
+    parts: &mut Parts,
+    place: &ModelPlace,
+    warnings: &mut Vec<Warning>,
+) -> Result<(), SceneError> {
+    let mut model = obj::load_model(&place.path)?;
+    warnings.append(&mut model.warnings);
+    let bounds = model.mesh.bounds();
+    let (free, scale) = stage::free_place(parts, bounds.extent(), place.size);
+    let at = place.at.unwrap_or(free);
+    let shift = at - stage::foot(&bounds) * scale;
+    let placement = Placement { scale, shift, ..Placement::NONE };
+    check_fits(&place.path, &model, &placement)?;
+    parts.add_model(model, &placement);
+    Ok(())
+}
+
+/// Whether a model still has coordinates when it is placed.
+fn check_fits(path: &Path, model: &Model, placement: &Placement) -> Result<(), SceneError> {
+    let far = model.mesh.vertices().iter().position(|v| !placement.point(*v).is_finite());
+    match far {
+        None => Ok(()),
+        Some(vertex) => Err(SceneError::Model(ModelError::Mesh {
+            path: path.display().to_string(),
+            source: MeshError::NotFinite {
+                vertex,
+                value: placement.point(model.mesh.vertices()[vertex]),
+            },
+        })),
+    }
+}
