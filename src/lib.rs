@@ -1,4 +1,73 @@
-//! A Whitted-style recursive ray tracer.
+//! A Whitted-style recursive ray tracer whose answers are right at every scale.
+//!
+//! # The path of a ray
+//!
+//! [`render::render`] hands [tiles](film::Tile) of the film to its workers. In a tile, [`aa::AntiAliasing`] picks places on the
+//! film and [`camera::View`] makes each a [`geometry::Ray`]. [`accel::Accel`] finds the primitive it meets first: it
+//! skips what the ray passes by boxes in single precision, made a little too large, and asks the
+//! [`geometry::Shape`]s that are left in double precision. The winner's [`geometry::Surface`] (point, normal, error bound) and its
+//! [`material::Material`], coloured by a [`texture::Texture`], say how light leaves it; rays towards every
+//! [`light::Light`] ask what stands between; and reflected and refracted rays, each knowing the surface it leaves, join the work list of
+//! [`trace::Tracer`]. What comes back is averaged over the pixel in linear light, put on the [`film::Film`] and
+//! encoded at the very end.
+//!
+//! A [`scene::Scene`] is made from a [`scene::SceneDesc`], which is plain data, read from TOML.
+//!
+//! # A picture
+//!
+//! ```
+//! use whitted::{film, render, scene};
+//!
+//! let scene = scene::load_builtin("assignment")?;
+//! let options = render::RenderOptions { size: Some([60, 60]), ..Default::default() };
+//! let rendering = render::render(&scene, &options, &|_| ())?;
+//!
+//! let mut png = Vec::new();
+//! film::encode::write_png(&rendering.film, &mut png)?;
+//! assert_eq!(rendering.rays.camera, 60 * 60 * 4);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Step by step
+//!
+//! Each step can be taken alone, with rays of any length and scale:
+//!
+//! ```
+//! use glam::DVec3;
+//! use whitted::{
+//!     geometry::{Ray, Shape, Sphere, reflect, refract},
+//! };
+//!
+//! // One primitive, number 0: a ball of glass, a light-year away from the origin in metres.
+//! let center = DVec3::new(0.0, 0.0, -9.5e15);
+//! let ball = Shape::from(Sphere::try_new(center, 4.0)?);
+//! let ray = Ray::new(DVec3::new(2.0, 0.0, center.z + 16.0), DVec3::NEG_Z * 1e-100);
+//! let (hit, surface) = ball.first_hit(0, &ray).expect("aimed at it");
+//! assert_eq!(hit.face, 0);
+//! assert!(surface.normal.dot(ray.dir) < 0.0);
+//!
+//! // Into the glass: refract a unit direction, leave the hit to the inside, and meet the far side.
+//! let inside = refract(DVec3::NEG_Z, surface.normal, 1.0, 1.5).expect("no total reflection from outside");
+//! let (far, far_surface) = ball.first_hit(0, &surface.leave(&hit, inside, true)).expect("the far side");
+//! assert!(far.t > 4.0 && far.t < 8.0);
+//!
+//! // Out again: the direction leaves the sphere for good.
+//! let out = refract(inside, -far_surface.normal, 1.5, 1.0).expect("it came in, so it gets out");
+//! assert!(ball.first_hit(0, &far_surface.leave(&far, out, false)).is_none());
+//!
+//! // Total reflection is an answer, not an error.
+//! let grazing = DVec3::new(0.9, 0.0, -0.19_f64.sqrt());
+//! assert!(refract(grazing, DVec3::Z, 1.5, 1.0).is_none());
+//! assert_eq!(reflect(grazing, DVec3::Z), DVec3::new(0.9, 0.0, 0.19_f64.sqrt()));
+//!
+//! // A whole scene: the nearest hit, and whether anything stands between.
+//! let scene = whitted::scene::load_builtin("assignment")?;
+//! let (hit, surface) = scene.nearest(&Ray::new(DVec3::ZERO, DVec3::NEG_Z)).expect("the wall");
+//! assert_eq!((hit.primitive, surface.point.z), (1, -200.0));
+//! let to_light = surface.leave(&hit, DVec3::new(30.0, 40.0, -10.0) - surface.point, false);
+//! assert!(!scene.is_occluded(&to_light, 1.0));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod aa;
 pub mod accel;

@@ -15,12 +15,13 @@ use thiserror::Error;
 
 pub use crate::trace::RayCounts;
 use crate::{
-    aa::AntiAliasing,
+    aa::{AntiAliasing, average},
     camera::View,
     color::Rgb,
     film::{Film, Tile, tiles},
+    geometry::Ray,
     scene::Scene,
-    trace::Tracer,
+    trace::{BATCH, Sample, Tracer},
 };
 
 /// The side of a tile in pixels: small enough to share the work out evenly, large enough to cost nothing by itself.
@@ -100,6 +101,7 @@ pub fn render(
         .map_err(|source| RenderError::Threads { threads, source })?;
 
     let view = scene.camera().view(width, height);
+    let places = options.aa.places();
     let total = u64::from(width) * u64::from(height);
     let film = Mutex::new(Film::new(width, height));
     let done = AtomicU64::new(0);
@@ -118,7 +120,7 @@ pub fn render(
                 || (Tracer::new(scene, depth), TilePixels::default()),
                 |(tracer, pixels), tile| {
                     let before = tracer.counts();
-                    pixels.render(tracer, &view, &tile, options.aa);
+                    pixels.render(tracer, &view, &tile, &places);
                     finish(&tile, pixels);
                     tracer.counts() - before
                 },
@@ -129,24 +131,58 @@ pub fn render(
     Ok(Rendering { film, rays, threads, seconds: started.elapsed().as_secs_f64(), depth })
 }
 
-/// The pixels of one tile, row by row; kept from tile to tile.
+/// The pixels of one tile, row by row, and the scratch to make them; kept from tile to tile.
 #[derive(Debug, Default)]
 struct TilePixels {
     colors: Vec<Rgb>,
     samples: Vec<u32>,
+    rays: Vec<Ray>,
+    traced: Vec<Sample>,
+    /// The colours of the samples of all pixels, pixel after pixel in Morton order.
+    sampled: Vec<Rgb>,
 }
 
 impl TilePixels {
-    fn render(&mut self, tracer: &mut Tracer, view: &View, tile: &Tile, aa: AntiAliasing) {
-        self.colors.clear();
-        self.samples.clear();
-        for y in tile.y0..tile.y1 {
-            for x in tile.x0..tile.x1 {
-                let corner = DVec2::new(f64::from(x), f64::from(y));
-                let pixel = aa.pixel(corner, |place| tracer.radiance(view.ray(place)));
-                self.colors.push(pixel.color);
-                self.samples.push(pixel.samples);
+    fn render(&mut self, tracer: &mut Tracer, view: &View, tile: &Tile, places: &[DVec2]) {
+        let pixels = morton_order(tile);
+        self.sampled.clear();
+        let rays = pixels
+            .iter()
+            .flat_map(|corner| places.iter().map(move |place| view.ray(*corner + *place)));
+        // Neighbours in the picture are traced together.
+        for ray in rays {
+            self.rays.push(ray);
+            if self.rays.len() == BATCH {
+                self.trace(tracer);
             }
         }
+        self.trace(tracer);
+
+        let count = pixels.len();
+        self.colors.clear();
+        self.colors.resize(count, Rgb::ZERO);
+        for (corner, samples) in pixels.iter().zip(self.sampled.chunks(places.len())) {
+            let (column, row) = (corner.x as u32 - tile.x0, corner.y as u32 - tile.y0);
+            self.colors[(row * tile.width() + column) as usize] = average(samples);
+        }
+        self.samples.clear();
+        self.samples.resize(count, places.len() as u32);
     }
+
+    fn trace(&mut self, tracer: &mut Tracer) {
+        tracer.trace(&self.rays, &mut self.traced);
+        self.sampled.extend(self.traced.iter().map(|sample| sample.color));
+        self.rays.clear();
+    }
+}
+
+/// The upper left corners of the pixels of a tile, so that any run of them is close together.
+fn morton_order(tile: &Tile) -> Vec<DVec2> {
+    let side = tile.width().max(tile.height()).next_power_of_two();
+    let even_bits = |code: u32| (0..16).fold(0, |x, bit| x | ((code >> (2 * bit)) & 1) << bit);
+    (0..side * side)
+        .map(|code| (even_bits(code), even_bits(code >> 1)))
+        .filter(|(x, y)| *x < tile.width() && *y < tile.height())
+        .map(|(x, y)| DVec2::new(f64::from(tile.x0 + x), f64::from(tile.y0 + y)))
+        .collect()
 }

@@ -152,6 +152,10 @@ fn bad_values_are_refused_on_one_line_before_anything_is_written() {
         (&["--threads", "-1"], &["--threads", whole]),
         (&["--depth", "0"], &["--depth", whole]),
         (&["--depth", "x"], &["--depth", whole]),
+        (&["--objects", "0"], &["--objects", whole]),
+        (&["--objects", "-5"], &["--objects", whole]),
+        (&["--objects", "50000001"], &["--objects", "50000000"]),
+        (&["--objects", "7"], &["assignment", "fixed number", "spheres"]),
         (&["--progress", "plan"], &["--progress", "auto, bar, plain, json, none", "'plain'"]),
         (&["--sise", "8x8"], &["--sise", "'--size'"]),
         (&["--output"], &["--output"]),
@@ -381,6 +385,21 @@ fn help_and_version_go_to_standard_output() {
         .map(|f| format!("--{f}"))
     {
         assert!(text(&output.stdout).contains(&flag), "{flag}");
+    }
+}
+
+#[test]
+fn spheres_come_in_any_number() {
+    let folder = folder();
+    for (objects, primitives) in [(&["--objects", "12"][..], 13), (&[], 1001)] {
+        let small = ["render", "spheres", "--size", "6x4", "--stats", "-", "--quiet"];
+        let output = run(folder.path(), &[&small[..], objects].concat());
+        assert_done(&output);
+        let stats: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        assert_eq!(
+            (&stats["scene"], &stats["primitives"]),
+            (&"spheres".into(), &primitives.into())
+        );
     }
 }
 

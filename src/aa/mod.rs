@@ -42,15 +42,6 @@ pub enum AaError {
     },
 }
 
-/// The colour of a pixel and what it took.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PixelEstimate {
-    /// The mean of the samples, each clamped to `[0, 1]`, in linear light.
-    pub color: Rgb,
-    /// How many rays went through the pixel.
-    pub samples: u32,
-}
-
 impl Default for AntiAliasing {
     /// Four rays per pixel, on a grid.
     fn default() -> Self {
@@ -59,24 +50,22 @@ impl Default for AntiAliasing {
 }
 
 impl AntiAliasing {
-    /// The colour of the pixel whose upper left corner on the film is `corner`, from the `radiance` of places on the film.
-    pub fn pixel(self, corner: DVec2, mut radiance: impl FnMut(DVec2) -> Rgb) -> PixelEstimate {
+    /// The places in a pixel that are asked for their colour, in pixels from its upper left corner, row by row.
+    pub fn places(self) -> Vec<DVec2> {
         let side = match self {
             Self::None => 1,
             Self::Grid { side } => side,
         };
-        let mut sum = Rgb::ZERO;
-        for row in 0..side {
-            for column in 0..side {
-                let cell = DVec2::new(f64::from(column), f64::from(row));
-                let place = corner + (cell + 0.5) / f64::from(side);
-                // A NaN, which no valid scene has, would be black.
-                sum += radiance(place).max(Rgb::ZERO).min(Rgb::ONE);
-            }
-        }
-        let samples = side * side;
-        PixelEstimate { color: sum / samples as f32, samples }
+        let along = |k: u32| (f64::from(k) + 0.5) / f64::from(side);
+        (0..side * side).map(|k| DVec2::new(along(k % side), along(k / side))).collect()
     }
+}
+
+/// The colour of a pixel from its samples: their mean, each clamped to `[0, 1]`, in linear light.
+pub fn average(samples: &[Rgb]) -> Rgb {
+    // A NaN, which no valid scene has, would be black.
+    let sum: Rgb = samples.iter().map(|sample| sample.max(Rgb::ZERO).min(Rgb::ONE)).sum();
+    sum / samples.len() as f32
 }
 
 impl fmt::Display for AntiAliasing {
@@ -112,15 +101,16 @@ mod tests {
     #[test]
     fn a_grid_is_off_by_half_a_cell_at_most() {
         for side in [1, 2, 3, 4, 16] {
+            let places = AntiAliasing::Grid { side }.places();
+            assert_eq!(places.len() as u32, side * side);
             for k in 0..=100 {
                 let k = f64::from(k) / 100.0;
-                let edge = |p: DVec2| if p.x - 7.0 < k { Rgb::ONE } else { Rgb::ZERO };
-                let pixel = AntiAliasing::Grid { side }.pixel(DVec2::new(7.0, 3.0), edge);
+                let edge = |p: &DVec2| if p.x < k { Rgb::ONE } else { Rgb::ZERO };
+                let pixel = average(&places.iter().map(edge).collect::<Vec<_>>());
                 assert!(
-                    (f64::from(pixel.color.x) - k).abs() <= 0.5 / f64::from(side) + 1e-7,
+                    (f64::from(pixel.x) - k).abs() <= 0.5 / f64::from(side) + 1e-7,
                     "{side}, {k}"
                 );
-                assert_eq!(pixel.samples, side * side);
             }
         }
     }
@@ -128,18 +118,14 @@ mod tests {
     /// Oracle: the places a, b in {(k + 0.5)/2} of the scene's description.
     #[test]
     fn two_by_two_rays_go_through_quarters() {
-        let mut places = Vec::new();
-        AntiAliasing::default().pixel(DVec2::new(10.0, 20.0), |p| {
-            places.push((p.x, p.y));
-            Rgb::ZERO
-        });
-        assert_eq!(places, [(10.25, 20.25), (10.75, 20.25), (10.25, 20.75), (10.75, 20.75)]);
+        let places: Vec<_> = AntiAliasing::default().places().iter().map(|p| (p.x, p.y)).collect();
+        assert_eq!(places, [(0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75)]);
+        assert_eq!(AntiAliasing::None.places(), [DVec2::splat(0.5)]);
     }
 
     #[test]
     fn samples_are_clamped_before_they_are_averaged() {
-        let bright = |p: DVec2| if p.x < 0.5 { Rgb::splat(9.0) } else { Rgb::ZERO };
-        assert_eq!(AntiAliasing::default().pixel(DVec2::ZERO, bright).color, Rgb::splat(0.5));
+        assert_eq!(average(&[Rgb::splat(9.0), Rgb::ZERO]), Rgb::splat(0.5));
     }
 
     #[test]

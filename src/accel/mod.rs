@@ -1,21 +1,76 @@
 //! Which primitive does a ray meet first, and which does it cross on its way to a light?
+//!
+//! Candidates are found in single precision, by a tree of boxes that are a little too large (`frame`, `walk`); what is
+//! hit is decided by the shapes themselves in double precision, so that every answer is, to the bit, the one of
+//! [`brute`], whatever the machine's instructions.
 
 pub mod brute;
+mod build;
+mod collapse;
+mod crossed;
+mod extreme;
+mod frame;
+mod leaf;
+mod node;
+mod query;
+mod simd;
+#[cfg(target_arch = "x86_64")]
+mod simd_x86;
+#[cfg(test)]
+mod tests;
+mod tree;
+mod walk;
 
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
+
+use glam::DVec3;
 
 use crate::geometry::{Bounds, Crossing, Hit, Ray, Shape};
+use build::Division;
+use crossed::Crossed;
+use query::Nearest;
+pub use simd::Isa;
+use simd::dispatch;
+use tree::Tree;
 
 /// The primitives of a scene, arranged so that a ray finds those it meets without trying all.
 #[derive(Debug)]
 pub struct Accel {
+    tree: Option<Tree>,
+    /// The primitives: those of the tree in the order of its leaves, then those outside it.
     shapes: Vec<Shape>,
+    /// The number of the primitive in each place, and the place of each.
+    numbers: Vec<u32>,
+    places: Vec<u32>,
+    /// How many are in the tree.
+    inside: usize,
+    bounds: Bounds,
+    isa: Isa,
 }
 
 impl Accel {
     /// Arranges `shapes`; a primitive's number is its place in them.
     pub fn build(shapes: Vec<Shape>) -> Self {
-        Self { shapes }
+        Self::with_isa(shapes, Isa::detect())
+    }
+
+    /// As [`Accel::build`], with queries by the instructions of `isa`, or the portable ones where the machine lacks them.
+    pub fn with_isa(shapes: Vec<Shape>, isa: Isa) -> Self {
+        let bounds = shapes.iter().fold(Bounds::EMPTY, |b, s| b.union(s.bounds()));
+        let division = Division::of(&shapes);
+        let (tree, mut numbers) = match Tree::build(&shapes, &division) {
+            Some((tree, order)) => (Some(tree), order),
+            None => (None, Vec::new()),
+        };
+        let inside = numbers.len();
+        numbers.extend(&division.outside);
+        let mut places = vec![0; numbers.len()];
+        for (place, number) in (0..).zip(&numbers) {
+            places[*number as usize] = place;
+        }
+        let shapes = in_order(shapes, &numbers);
+        let isa = if isa.is_available() { isa } else { Isa::Portable };
+        Self { tree, shapes, numbers, places, inside, bounds, isa }
     }
 
     /// The number of primitives.
@@ -30,27 +85,54 @@ impl Accel {
 
     /// The number of nodes of the tree.
     pub fn node_count(&self) -> usize {
-        0
+        self.tree.as_ref().map_or(0, |tree| tree.nodes.len())
     }
 
     /// The memory of tree and primitives, in bytes.
     pub fn bytes(&self) -> usize {
-        size_of_val(self.shapes.as_slice())
+        let nodes = self.tree.as_ref().map_or(0, |tree| size_of_val(tree.nodes.as_slice()));
+        let numbers = size_of_val(self.numbers.as_slice()) + size_of_val(self.places.as_slice());
+        nodes + numbers + size_of_val(self.shapes.as_slice())
     }
 
     /// The primitive with this number.
     pub fn shape(&self, primitive: u32) -> &Shape {
-        &self.shapes[primitive as usize]
+        &self.shapes[self.places[primitive as usize] as usize]
     }
 
     /// The smallest box about all primitives.
     pub fn bounds(&self) -> Bounds {
-        self.shapes.iter().fold(Bounds::EMPTY, |b, s| b.union(s.bounds()))
+        self.bounds
+    }
+
+    /// The instructions that queries use.
+    pub fn isa(&self) -> Isa {
+        self.isa
     }
 
     /// The nearest hit with `0 < t < end`; of equal ones, that of the lowest primitive.
     pub fn nearest(&self, ray: &Ray, end: f64) -> Option<Hit> {
-        brute::nearest(&self.shapes, ray, end)
+        dispatch(self.isa, Nearest { accel: self, ray, end })
+    }
+
+    /// The nearest hits of up to 64 rays of one origin, as [`Accel::nearest`] without an end finds them.
+    pub fn nearest_packet(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = self.nearest(ray, f64::INFINITY);
+        }
+    }
+
+    /// Calls `visit(index, primitive, crossing)` for every crossing of each of up to 64 rays before its end at `t = 1`, which is
+    /// `target` for all of them, in no order; a ray whose visit breaks is done.
+    pub fn any_crossing_packet(
+        &self,
+        rays: &[Ray],
+        _target: DVec3,
+        mut visit: impl FnMut(u32, u32, Crossing) -> ControlFlow<()>,
+    ) {
+        for (ray, index) in rays.iter().zip(0..) {
+            self.any_crossing(ray, 1.0, |primitive, crossing| visit(index, primitive, crossing));
+        }
     }
 
     /// Calls `visit(primitive, crossing)` for every crossing with `0 < t < end`, in no order, until it breaks.
@@ -62,6 +144,37 @@ impl Accel {
         end: f64,
         visit: impl FnMut(u32, Crossing) -> ControlFlow<()>,
     ) -> bool {
-        brute::any_crossing(&self.shapes, ray, end, visit)
+        self.is_blocked(ray, end, |_| false, visit)
     }
+
+    /// Whether a primitive that is `opaque` is crossed with `0 < t < end`, or `visit(primitive, crossing)` breaks, which is
+    /// called for crossings of the others, in no order, until the answer is known.
+    pub fn is_blocked(
+        &self,
+        ray: &Ray,
+        end: f64,
+        opaque: impl Fn(u32) -> bool,
+        visit: impl FnMut(u32, Crossing) -> ControlFlow<()>,
+    ) -> bool {
+        dispatch(self.isa, Crossed { accel: self, ray, end, opaque, visit })
+    }
+
+    /// The place of the primitive that `ray` leaves, if it does.
+    #[inline(always)]
+    fn place_left(&self, ray: &Ray) -> u32 {
+        let number = ray.from.map_or(usize::MAX, |from| from.primitive as usize);
+        self.places.get(number).copied().unwrap_or(u32::MAX)
+    }
+
+    /// The places of the primitives that are not in the tree.
+    #[inline(always)]
+    fn outside(&self) -> Range<usize> {
+        self.inside..self.shapes.len()
+    }
+}
+
+/// The `shapes` in the order of `numbers`, which name each once.
+fn in_order(shapes: Vec<Shape>, numbers: &[u32]) -> Vec<Shape> {
+    let mut shapes: Vec<Option<Shape>> = shapes.into_iter().map(Some).collect();
+    numbers.iter().filter_map(|k| shapes[*k as usize].take()).collect()
 }

@@ -7,6 +7,7 @@ use clap::{Parser, Subcommand, ValueEnum};
 use glam::DVec3;
 use whitted::aa::AntiAliasing;
 use whitted::scene::ModelPlace;
+use whitted::scene::generators::MOST_OBJECTS;
 
 use super::memory;
 
@@ -70,6 +71,10 @@ pub(crate) struct RenderArgs {
     /// Deepest level of recursion, camera rays being level 1 [default: the scene's own]
     #[arg(long, value_name = "N", value_parser = parse_depth, allow_negative_numbers = true)]
     pub(crate) depth: Option<u32>,
+
+    /// Objects in a generated scene (spheres), from 1 to 50000000 [default: 1000]
+    #[arg(long, value_name = "N", value_parser = parse_objects, allow_negative_numbers = true)]
+    pub(crate) objects: Option<u32>,
 
     /// Threads to render with, at most 4096 [default: one per core]
     #[arg(long, value_name = "N", value_parser = parse_threads, allow_negative_numbers = true)]
@@ -158,6 +163,13 @@ fn parse_depth(text: &str) -> Result<u32, String> {
     match text.parse() {
         Ok(depth) if depth > 0 => Ok(depth),
         _ => Err(format!("give a whole number from 1 (camera rays only) to {}", u32::MAX)),
+    }
+}
+
+fn parse_objects(text: &str) -> Result<u32, String> {
+    match text.parse() {
+        Ok(objects @ 1..=MOST_OBJECTS) => Ok(objects),
+        _ => Err(format!("give a whole number from 1 to {MOST_OBJECTS}")),
     }
 }
 

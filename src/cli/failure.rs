@@ -90,9 +90,14 @@ impl<E: Into<anyhow::Error>> From<E> for Failure {
         let error = error.into();
         let exit = match (error.downcast_ref::<ImageError>(), error.downcast_ref::<SceneError>()) {
             (Some(ImageError::UnknownExtension { .. }), _)
-            | (_, Some(SceneError::UnknownScene { .. } | SceneError::UnknownFile { .. })) => {
-                Exit::Usage
-            }
+            | (
+                _,
+                Some(
+                    SceneError::UnknownScene { .. }
+                    | SceneError::UnknownFile { .. }
+                    | SceneError::NotGenerated { .. },
+                ),
+            ) => Exit::Usage,
             (_, Some(_)) => Exit::Scene,
             _ if error.is::<ModelError>() => Exit::Scene,
             _ => Exit::Failed,

@@ -24,6 +24,7 @@ pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
         look_at: args.look_at,
         up: args.up,
         fov: args.fov,
+        objects: args.objects,
     };
     let Loaded { scene, warnings } = whitted::scene::load(&args.scene, &load_options)?;
     warn(&warnings, args.strict, args.quiet)?;

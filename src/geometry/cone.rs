@@ -185,16 +185,19 @@ impl Cone {
         } else {
             // Between the roots the line is outside; it enters or leaves the lower nappe once, at the finite root there.
             let through = if dy < 0.0 {
-                if far.t.is_finite() { far.t } else { near.t }
+                if far.t.is_finite() { far } else { near }
             } else if near.t.is_finite() {
-                near.t
+                near
             } else {
-                far.t
+                far
             };
+            if a == 0.0 && through.y > 0.0 {
+                return None; // parallel to a generator, the one root on the upper nappe
+            }
             Some(if dy < 0.0 {
-                Interval::new(through, f64::INFINITY)
+                Interval::new(through.t, f64::INFINITY)
             } else {
-                Interval::new(f64::NEG_INFINITY, through)
+                Interval::new(f64::NEG_INFINITY, through.t)
             })
         }
     }

@@ -99,8 +99,13 @@ impl Surface {
     pub fn leave(&self, hit: &Hit, dir: DVec3, inward: bool) -> Ray {
         let offset = if inward { -self.error } else { self.error };
         let origin = self.point + self.normal * offset;
-        let from =
-            Departure { primitive: hit.primitive, face: hit.face, inward, local: self.local };
+        let from = Departure {
+            primitive: hit.primitive,
+            face: hit.face,
+            inward,
+            local: self.local,
+            point: self.point,
+        };
         Ray { origin, dir, from: Some(from) }
     }
 }

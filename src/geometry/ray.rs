@@ -26,6 +26,9 @@ pub struct Departure {
     pub inward: bool,
     /// The point left, in the primitive's own coordinates, as in [`Surface::local`](super::Surface::local).
     pub local: DVec3,
+    /// The point left. The ray's origin is beside it, to find out what is met; where that is, is then computed from
+    /// here, so that the steps aside of many bounces do not add up.
+    pub point: DVec3,
 }
 
 impl Ray {

@@ -5,7 +5,7 @@ use thiserror::Error;
 
 use super::{
     Bounds, Cone, Cylinder, Face, Polygon, Quad, Similarity, Sphere, Triangle,
-    hit::{Crossings, Hit, NO_CROSSINGS, Surface, first_ahead},
+    hit::{Crossing, Crossings, Hit, NO_CROSSINGS, Surface, first_ahead},
     ray::{Departure, Ray},
 };
 use crate::math::scale;
@@ -182,6 +182,11 @@ impl Shape {
     /// The surface where `ray` meets this shape in `hit`.
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         let own = ray.from.as_ref().filter(|from| from.primitive == hit.primitive);
+        if let (Some(from), None) = (&ray.from, own)
+            && let (direct, Some(t)) = self.met_directly(ray, from, hit)
+        {
+            return self.surface(&direct, &Hit { t, ..*hit });
+        }
         match self {
             Self::Sphere(s) => s.surface(ray, hit.t, own),
             Self::Cylinder(s) => s.surface(ray, hit.t, hit.face, own),
@@ -191,6 +196,17 @@ impl Shape {
             Self::Polygon(s) => s.surface(ray, hit.t),
             Self::Face(s) => s.surface(ray, hit.t),
         }
+    }
+
+    /// The ray from the very point that `ray` leaves, and where it crosses this shape in place of `hit`.
+    ///
+    /// Nowhere, if the step aside that `ray` starts with makes the difference between hit and miss.
+    fn met_directly(&self, ray: &Ray, from: &Departure, hit: &Hit) -> (Ray, Option<f64>) {
+        let direct = Ray::new(from.point, ray.dir);
+        let near = |a: &Crossing, b: &Crossing| (a.t - hit.t).abs().total_cmp(&(b.t - hit.t).abs());
+        let crossings = self.crossings(&direct);
+        let same = crossings.iter().filter(|c| c.face == hit.face && c.t.is_finite());
+        (direct, same.min_by(|a, b| near(a, b)).map(|c| c.t))
     }
 
     /// Whether [`Surface::uv`] means anything on this shape.

@@ -100,7 +100,11 @@ impl Similarity {
     /// The image of a ray, its direction brought to ordinary length, and how its parameters are to be read.
     pub fn ray(&self, ray: &Ray) -> (Ray, ParameterScale) {
         let (dir, e) = scale::normalized(ray.dir);
-        let from = ray.from.map(|from| Departure { local: self.vector(from.local), ..from });
+        let from = ray.from.map(|from| Departure {
+            local: self.vector(from.local),
+            point: self.point(from.point),
+            ..from
+        });
         (Ray { origin: self.point(ray.origin), dir, from }, ParameterScale(e - self.exponent))
     }
 

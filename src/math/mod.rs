@@ -3,6 +3,7 @@
 pub mod compensated;
 pub mod frame;
 pub mod quadratic;
+pub mod random;
 pub mod scale;
 
 pub use compensated::{cross, difference_of_products, dot};

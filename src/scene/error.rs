@@ -17,6 +17,14 @@ pub enum SceneError {
         /// What there is.
         known: String,
     },
+    /// A number of objects was asked for, but the scene's description lists them.
+    #[error("scene `{name}` has a fixed number of objects (any number: {known})")]
+    NotGenerated {
+        /// The scene.
+        name: String,
+        /// The scenes that have as many objects as one likes.
+        known: String,
+    },
     /// The text is not that of a scene.
     #[error("{name}: {source}")]
     Syntax {

@@ -7,18 +7,21 @@
 pub mod builtin;
 pub mod desc;
 pub mod error;
+pub mod generators;
 pub mod load;
 pub mod obj;
 pub mod open;
 mod parts;
 mod stage;
+#[cfg(test)]
+mod tests;
 pub mod text;
 mod warning;
 
 use std::{ops::ControlFlow, sync::Arc, time::Instant};
 
 pub use self::{
-    builtin::{Builtin, builtins, load_builtin},
+    builtin::{Builtin, builtins, load_builtin, load_builtin_of},
     desc::SceneDesc,
     error::SceneError,
     open::{LoadOptions, Loaded, ModelPlace, load},

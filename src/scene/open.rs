@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::{
     Scene,
-    builtin::{self, builtins},
+    builtin::builtins,
     error::SceneError,
     obj::{self, Model, ModelError},
     parts::{CameraPlan, Parts, Placement},
@@ -24,6 +24,8 @@ pub struct LoadOptions {
     pub eye: Option<DVec3>,
     /// What is in the middle of the picture.
     pub look_at: Option<DVec3>,
+    /// The number of objects of a generated scene.
+    pub objects: Option<u32>,
     /// Which direction is up: in the picture, and for a model that comes alone also in its own space.
     pub up: Option<DVec3>,
     /// The vertical field of view in degrees.
@@ -57,10 +59,14 @@ pub struct Loaded {
 pub fn load(name: &str, options: &LoadOptions) -> Result<Loaded, SceneError> {
     let mut warnings = Vec::new();
     let (short, mut parts) = if let Some(found) = builtins().iter().find(|b| b.name == name) {
-        (name.to_owned(), Parts::try_new(&found.desc()?, &mut builtin::picture)?)
+        (name.to_owned(), found.parts(options.objects)?)
     } else {
         let path = Path::new(name);
         let kind = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+        if options.objects.is_some() {
+            let known = "spheres".to_owned();
+            return Err(SceneError::NotGenerated { name: name.to_owned(), known });
+        }
         let parts = if let Some("obj") = kind.as_deref() {
             model_alone(path, options, &mut warnings)?
         } else {

@@ -49,16 +49,16 @@ pub struct UvMap {
 }
 
 impl Texture {
-    /// The colour at a point, in linear light.
-    pub fn color(&self, at: &TexturePoint) -> Rgb {
+    /// The colour at a point, in linear light, and which of its colours a pattern shows there (0 for what has no edges).
+    pub fn at(&self, at: &TexturePoint) -> (Rgb, u32) {
         match self {
-            Self::Solid(color) => *color,
-            Self::Checker(checker) => checker.color(at.point),
-            Self::Plaid(plaid) => plaid.color(at.point),
-            Self::Image(image) => image.sample(at.uv),
+            Self::Solid(color) => (*color, 0),
+            Self::Checker(checker) => checker.at(at.point),
+            Self::Plaid(plaid) => plaid.at(at.point),
+            Self::Image(image) => (image.sample(at.uv), 0),
             Self::Repeated(image, map) => {
                 let uv = at.uv * map.scale + map.offset;
-                if map.clamp { image.sample(uv) } else { image.sample_repeated(uv) }
+                (if map.clamp { image.sample(uv) } else { image.sample_repeated(uv) }, 0)
             }
         }
     }

@@ -18,10 +18,11 @@ pub struct Checker {
 }
 
 impl Checker {
-    /// The colour at a point.
-    pub fn color(&self, p: DVec3) -> Rgb {
+    /// The colour at a point, and its number: 0 for even, 1 for odd.
+    pub fn at(&self, p: DVec3) -> (Rgb, u32) {
         let cell = ((p - self.origin) / self.size).floor();
-        if (cell.x + cell.z).rem_euclid(2.0) < 0.5 { self.even } else { self.odd }
+        let half = (cell.x + cell.z) * 0.5;
+        if half == half.floor() { (self.even, 0) } else { (self.odd, 1) }
     }
 
     pub(super) fn mapped(self, map: &Similarity) -> Self {
@@ -48,14 +49,14 @@ pub struct Plaid {
 }
 
 impl Plaid {
-    /// The colour at a point.
-    pub fn color(&self, p: DVec3) -> Rgb {
+    /// The colour at a point, and its number: how many stripes are there.
+    pub fn at(&self, p: DVec3) -> (Rgb, u32) {
         let q = (p - self.origin) / self.size;
         let on_stripe = |cell: f64| cell.floor().rem_euclid(3.0) < 0.5;
         match (on_stripe(q.x + q.y), on_stripe(q.x - q.y)) {
-            (true, true) => self.stripe,
-            (false, false) => self.ground,
-            _ => self.mixed,
+            (true, true) => (self.stripe, 2),
+            (false, false) => (self.ground, 0),
+            _ => (self.mixed, 1),
         }
     }
 
@@ -80,11 +81,11 @@ mod tests {
             for j in -40..40_i32 {
                 let k = (2 * i + 5).div_euclid(10) + (2 * j + 5).div_euclid(10); // x = i + 0.01
                 let p = DVec3::new(f64::from(i) + 0.01, 7.0, f64::from(j) + 0.01);
-                assert_eq!(checker.color(p), if k.rem_euclid(2) == 0 { A } else { B }, "{p}");
+                assert_eq!(checker.at(p).0, if k.rem_euclid(2) == 0 { A } else { B }, "{p}");
             }
         }
-        assert_eq!(checker.color(DVec3::new(-3.0, 0.0, 0.0)), B);
-        assert_eq!(checker.color(DVec3::new(-3.0, 0.0, -3.0)), A);
+        assert_eq!(checker.at(DVec3::new(-3.0, 0.0, 0.0)).0, B);
+        assert_eq!(checker.at(DVec3::new(-3.0, 0.0, -3.0)).0, A);
     }
 
     /// Oracle: the formula of the assignment in integers, with ⌊x + y − 5⌋ and ⌊x − y − 5⌋, negative coordinates included.
@@ -97,7 +98,7 @@ mod tests {
                 let p = DVec3::new(f64::from(i) + 0.5, f64::from(j) + 0.25, -118.0);
                 let count = u8::from((i + j - 5).rem_euclid(3) == 0)
                     + u8::from((i - j - 5).rem_euclid(3) == 0);
-                assert_eq!(plaid.color(p), [A, B, C][usize::from(count)], "{p}"); // sums end in .75 and .25
+                assert_eq!(plaid.at(p).0, [A, B, C][usize::from(count)], "{p}"); // sums end in .75 and .25
             }
         }
     }

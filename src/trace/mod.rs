@@ -1,90 +1,93 @@
-//! Whitted's recursion: the light that comes back along a ray.
+//! Whitted's recursion: the light that comes back along rays, and why it is what it is.
 //!
-//! The recursion is a work list of rays, each with the weight of its answer in the pixel and its level, so the call
-//! stack stays flat however deep it goes.
+//! The recursion is a work list of rays, each with the weight of its answer in its sample and its level, so the call
+//! stack stays flat however deep it goes. Rays are taken from the end of the list in batches of one level: those of a
+//! batch are traced together, then lit together light by light, because rays that start or end in one point
+//! are cheaper together. What a sample becomes does not depend on the batches: its parts are summed in fixed
+//! point ([`sum`]), where order does not matter.
 
-pub mod refract;
-pub mod shadow;
-
-use std::ops::{Add, Sub};
+mod counts;
+mod shadow;
+mod signature;
+mod sum;
 
 use glam::DVec3;
 
 use crate::{
     color::Rgb,
-    geometry::{Hit, Ray, Surface},
+    geometry::{Hit, Ray, Surface, reflect, refract},
+    light::Light,
     material::Material,
     scene::Scene,
     texture::TexturePoint,
 };
+pub use counts::RayCounts;
 use shadow::Shadows;
+use signature::{Branch, Path};
+use sum::Sum;
 
-pub use refract::{reflect, refract};
+/// How many rays are traced together.
+pub const BATCH: usize = 64;
 
-/// How many rays of each kind were cast.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct RayCounts {
-    /// Rays from the camera.
-    pub camera: u64,
-    /// Rays in the mirror direction.
-    pub reflected: u64,
-    /// Rays bent by Snell's law.
-    pub refracted: u64,
-    /// Rays that go straight on through a body of index 1.
-    pub transmitted: u64,
-    /// Rays towards a light, one for each light and shaded hit that faces it.
-    pub shadow: u64,
-    /// Camera rays that hit anything.
-    pub camera_hit: u64,
-}
-
-impl RayCounts {
-    fn combine(self, other: Self, op: impl Fn(u64, u64) -> u64) -> Self {
-        Self {
-            camera: op(self.camera, other.camera),
-            reflected: op(self.reflected, other.reflected),
-            refracted: op(self.refracted, other.refracted),
-            transmitted: op(self.transmitted, other.transmitted),
-            shadow: op(self.shadow, other.shadow),
-            camera_hit: op(self.camera_hit, other.camera_hit),
-        }
-    }
-}
-
-impl Add for RayCounts {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        self.combine(other, u64::add)
-    }
-}
-
-impl Sub for RayCounts {
-    type Output = Self;
-
-    fn sub(self, other: Self) -> Self {
-        self.combine(other, u64::sub)
-    }
+/// What one place on the film shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// The light that comes back, linear and not clamped.
+    pub color: Rgb,
+    /// A hash of all that the ray tree met: surfaces and their sides, cells of patterns, which lights were seen through what.
+    /// Two samples with the same signature differ by what varies smoothly.
+    pub signature: u32,
 }
 
 /// A ray yet to be traced.
 #[derive(Clone, Copy, Debug)]
 struct Task {
     ray: Ray,
-    /// What its answer counts in the pixel.
+    /// What its answer counts in the sample.
     weight: Rgb,
     /// Camera rays have level 1.
     level: u32,
+    /// Which of the samples asked for it belongs to.
+    sample: u32,
+    path: Path,
 }
 
-/// Traces rays through a scene, one after the other; each worker has its own.
+/// A hit that shows its own colour, while the lights are added.
+#[derive(Clone, Copy, Debug)]
+struct Lit<'a> {
+    task: Task,
+    hit: Hit,
+    surface: Surface,
+    material: &'a Material,
+    /// The side that the ray came from: whether that is the inside.
+    inside: bool,
+    /// The light that the texture scatters, and the highlights.
+    diffuse: Rgb,
+    specular: Rgb,
+    path: Path,
+}
+
+/// What a sample gathers.
+#[derive(Clone, Copy, Debug, Default)]
+struct Gathered {
+    color: Sum,
+    signature: u32,
+}
+
+/// Traces rays through a scene; each worker has its own.
 #[derive(Debug)]
 pub struct Tracer<'a> {
     scene: &'a Scene,
     depth: u32,
-    tasks: Vec<Task>,
-    shadows: Shadows<'a>,
     counts: RayCounts,
+    shadows: Shadows<'a>,
+    // Scratch that is kept from batch to batch.
+    tasks: Vec<Task>,
+    batch: Vec<Task>,
+    rays: Vec<Ray>,
+    hits: Vec<Option<Hit>>,
+    lit: Vec<Lit<'a>>,
+    gathered: Vec<Gathered>,
 }
 
 impl<'a> Tracer<'a> {
@@ -93,9 +96,14 @@ impl<'a> Tracer<'a> {
         Self {
             scene,
             depth,
-            tasks: Vec::new(),
-            shadows: Shadows::new(scene),
             counts: RayCounts::default(),
+            shadows: Shadows::new(scene),
+            tasks: Vec::new(),
+            batch: Vec::new(),
+            rays: Vec::new(),
+            hits: Vec::new(),
+            lit: Vec::new(),
+            gathered: Vec::new(),
         }
     }
 
@@ -104,88 +112,110 @@ impl<'a> Tracer<'a> {
         self.counts
     }
 
-    /// The light that a camera ray of the scene's own coordinates brings back; not clamped.
-    pub(crate) fn radiance(&mut self, ray: Ray) -> Rgb {
-        if self.depth == 0 {
-            return Rgb::ZERO;
-        }
-        self.counts.camera += 1;
-        let mut radiance = Rgb::ZERO;
-        self.tasks.push(Task { ray, weight: Rgb::ONE, level: 1 });
-        while let Some(task) = self.tasks.pop() {
-            let light = match self.scene.accel().nearest(&task.ray, f64::INFINITY) {
-                Some(hit) => {
-                    self.counts.camera_hit += u64::from(task.level == 1);
-                    self.shade(&task, &hit)
-                }
-                None => self.scene.background(),
+    /// What the camera rays `rays`, of one origin and in the scene's own coordinates, show; `samples` gets one for each.
+    pub(crate) fn trace(&mut self, rays: &[Ray], samples: &mut Vec<Sample>) {
+        self.gathered.clear();
+        self.gathered.resize(rays.len(), Gathered::default());
+        if self.depth > 0 {
+            self.counts.camera += rays.len() as u64;
+            let camera = |(ray, sample): (&Ray, u32)| Task {
+                ray: *ray,
+                weight: Rgb::ONE,
+                level: 1,
+                sample,
+                path: Path::START,
             };
-            radiance += task.weight * light;
+            self.tasks.extend(rays.iter().zip(0..).map(camera));
         }
-        radiance
+        while self.take_batch() {
+            self.trace_batch();
+        }
+        samples.clear();
+        let sample = |g: &Gathered| Sample { color: g.color.value(), signature: g.signature };
+        samples.extend(self.gathered.iter().map(sample));
     }
 
-    /// The light that leaves the surface by itself; what comes to it by reflection and transmission is put on the list.
-    fn shade(&mut self, task: &Task, hit: &Hit) -> Rgb {
-        let surface = self.scene.surface(&task.ray, hit);
-        let material = self.scene.material(hit.primitive);
-        let outside = surface.normal.dot(task.ray.dir) < 0.0;
+    /// Takes up to [`BATCH`] rays of one level from the end of the list; returns whether there were any.
+    fn take_batch(&mut self) -> bool {
+        self.batch.clear();
+        let Some(last) = self.tasks.last() else { return false };
+        let level = last.level;
+        while self.batch.len() < BATCH {
+            match self.tasks.pop_if(|task| task.level == level) {
+                Some(task) => self.batch.push(task),
+                None => break,
+            }
+        }
+        true
+    }
+
+    fn trace_batch(&mut self) {
+        self.rays.clear();
+        self.rays.extend(self.batch.iter().map(|task| task.ray));
+        self.hits.clear();
+        self.hits.resize(self.rays.len(), None);
+        let is_camera = self.batch[0].level == 1;
+        if is_camera {
+            self.scene.accel().nearest_packet(&self.rays, &mut self.hits);
+        } else {
+            for (ray, hit) in self.rays.iter().zip(&mut self.hits) {
+                *hit = self.scene.accel().nearest(ray, f64::INFINITY);
+            }
+        }
+        for k in 0..self.batch.len() {
+            let task = self.batch[k];
+            match self.hits[k] {
+                Some(hit) => {
+                    self.counts.camera_hit += u64::from(is_camera);
+                    self.meet(&task, &hit);
+                }
+                None => self.gather(&task, self.scene.background(), task.path.background()),
+            }
+        }
+        let scene = self.scene;
+        for light in scene.lights() {
+            self.add_light(light);
+        }
+        self.show();
+    }
+
+    fn gather(&mut self, task: &Task, light: Rgb, signature: u32) {
+        let gathered = &mut self.gathered[task.sample as usize];
+        gathered.color.add(task.weight * light);
+        gathered.signature = gathered.signature.wrapping_add(signature);
+    }
+
+    /// Puts what comes to a hit by reflection and transmission on the list, and the hit itself among those to be lit.
+    fn meet(&mut self, task: &Task, hit: &Hit) {
+        let scene = self.scene;
+        let surface = scene.surface(&task.ray, hit);
+        let material = scene.material(hit.primitive);
+        let inside = !(surface.normal.dot(task.ray.dir) < 0.0);
+        let path = task.path.hit(hit, inside);
         if material.is_transmissive() {
-            self.transmit(task, hit, &surface, material, outside);
-            if !outside {
-                return Rgb::ZERO; // from within, a body only transmits
+            self.transmit(task, hit, &surface, material, inside);
+            if inside {
+                // From within, a body only transmits.
+                return self.gather(task, Rgb::ZERO, path.signature());
             }
         }
         if material.reflection > 0.0 && task.level < self.depth {
-            let ray = surface.leave(hit, mirrored(task.ray.dir, &surface, outside), !outside);
+            let dir = mirrored(task.ray.dir, &surface, inside);
             self.counts.reflected += 1;
-            self.push(ray, task, Rgb::splat(material.reflection));
+            let weight = Rgb::splat(material.reflection);
+            self.push(surface.leave(hit, dir, inside), task, weight, Branch::Reflected);
         }
-        self.local_light(task, hit, &surface, material, outside)
-    }
-
-    /// Ambient, diffuse and specular light.
-    fn local_light(
-        &mut self,
-        task: &Task,
-        hit: &Hit,
-        surface: &Surface,
-        material: &Material,
-        outside: bool,
-    ) -> Rgb {
-        let normal = if outside { surface.shading } else { -surface.shading };
-        let offset = self.scene.shape(hit.primitive).shadow_offset(surface, !outside);
-        let (mut diffuse, mut specular) = (Rgb::splat(material.ambient), Rgb::ZERO);
-        for light in self.scene.lights() {
-            let mut shadow = surface.leave(hit, light.position - surface.point, !outside);
-            let to_light = shadow.dir.normalize();
-            let cosine = normal.dot(to_light);
-            if !(cosine > 0.0) {
-                continue;
-            }
-            self.counts.shadow += 1;
-            if offset != DVec3::ZERO {
-                shadow.origin += offset;
-            }
-            shadow.dir = light.position - shadow.origin; // so that the light is at t = 1
-            let arriving = light.intensity * self.shadows.transmittance(&shadow);
-            if arriving == Rgb::ZERO {
-                continue;
-            }
-            diffuse += arriving * (material.diffuse * cosine as f32);
-            if material.specular > 0.0 {
-                let highlight = reflect(task.ray.dir, normal).dot(to_light);
-                if highlight > 0.0 {
-                    specular +=
-                        arriving * (material.specular * highlight.powf(material.shininess) as f32);
-                }
-            }
-        }
-        if diffuse == Rgb::ZERO {
-            return specular;
-        }
-        let at = TexturePoint { uv: surface.uv, point: surface.point };
-        diffuse * material.texture.color(&at) * surface.tint * material.opacity + specular
+        let (diffuse, specular) = (Rgb::splat(material.ambient), Rgb::ZERO);
+        self.lit.push(Lit {
+            task: *task,
+            hit: *hit,
+            surface,
+            material,
+            inside,
+            diffuse,
+            specular,
+            path,
+        });
     }
 
     fn transmit(
@@ -194,7 +224,7 @@ impl<'a> Tracer<'a> {
         hit: &Hit,
         surface: &Surface,
         material: &Material,
-        outside: bool,
+        inside: bool,
     ) {
         if task.level >= self.depth {
             return;
@@ -203,25 +233,100 @@ impl<'a> Tracer<'a> {
         let (count, onward) = if material.ior == 1.0 {
             (&mut self.counts.transmitted, dir)
         } else {
-            let (from, to) = if outside { (1.0, material.ior) } else { (material.ior, 1.0) };
-            match refracted(dir, surface, outside, from, to) {
+            let (from, to) = if inside { (material.ior, 1.0) } else { (1.0, material.ior) };
+            match refracted(dir, surface, inside, from, to) {
                 Some(refracted) => (&mut self.counts.refracted, refracted),
                 None => return, // total reflection transmits nothing
             }
         };
         *count += 1;
-        self.push(surface.leave(hit, onward, outside), task, material.transmission);
+        self.push(
+            surface.leave(hit, onward, !inside),
+            task,
+            material.transmission,
+            Branch::Transmitted,
+        );
     }
 
-    fn push(&mut self, ray: Ray, parent: &Task, weight: Rgb) {
-        self.tasks.push(Task { ray, weight: parent.weight * weight, level: parent.level + 1 });
+    fn push(&mut self, ray: Ray, parent: &Task, weight: Rgb, branch: Branch) {
+        let (weight, level) = (parent.weight * weight, parent.level + 1);
+        self.tasks.push(Task {
+            ray,
+            weight,
+            level,
+            sample: parent.sample,
+            path: parent.path.branch(branch),
+        });
+    }
+
+    /// Adds what one light gives to the hits of the batch that face it.
+    fn add_light(&mut self, light: &Light) {
+        self.shadows.clear();
+        for (lit, index) in self.lit.iter().zip(0..) {
+            let normal = lit.normal();
+            let mut ray =
+                lit.surface.leave(&lit.hit, light.position - lit.surface.point, lit.inside);
+            let to_light = ray.dir.normalize();
+            let cosine = normal.dot(to_light);
+            if cosine > 0.0 {
+                let offset =
+                    self.scene.shape(lit.hit.primitive).shadow_offset(&lit.surface, lit.inside);
+                if offset != DVec3::ZERO {
+                    ray.origin += offset;
+                }
+                ray.dir = light.position - ray.origin; // so that the light is at t = 1
+                self.shadows.push(index, ray, to_light, cosine);
+            }
+        }
+        self.counts.shadow += self.shadows.len() as u64;
+        for shadow in self.shadows.cast(light.position) {
+            let lit = &mut self.lit[shadow.index as usize];
+            if shadow.transmittance == Rgb::ZERO {
+                continue;
+            }
+            lit.path = lit.path.light(light, shadow.passed);
+            let arriving = light.intensity * shadow.transmittance;
+            lit.diffuse += arriving * (lit.material.diffuse * shadow.cosine as f32);
+            if lit.material.specular > 0.0 {
+                // The mirror direction, d − 2 (d·n) n, against the direction of the light.
+                let dir = lit.task.ray.dir;
+                let highlight =
+                    dir.dot(shadow.to_light) - 2.0 * dir.dot(lit.normal()) * shadow.cosine;
+                if highlight > 0.0 {
+                    let shine = highlight.powf(lit.material.shininess) as f32;
+                    lit.specular += arriving * (lit.material.specular * shine);
+                }
+            }
+        }
+    }
+
+    /// Gives the colours of the lit hits to their samples.
+    fn show(&mut self) {
+        while let Some(lit) = self.lit.pop() {
+            let Lit { material, mut path, .. } = lit;
+            let mut light = lit.specular;
+            if lit.diffuse != Rgb::ZERO && material.opacity > 0.0 {
+                let at = TexturePoint { uv: lit.surface.uv, point: lit.surface.point };
+                let (color, cell) = material.texture.at(&at);
+                light += lit.diffuse * color * lit.surface.tint * material.opacity;
+                path = path.cell(cell);
+            }
+            self.gather(&lit.task, light, path.signature());
+        }
+    }
+}
+
+impl Lit<'_> {
+    /// The shading normal on the side that the ray came from.
+    fn normal(&self) -> DVec3 {
+        if self.inside { -self.surface.shading } else { self.surface.shading }
     }
 }
 
 /// The mirror direction of `dir` by the shading normal. Where that points below the surface, as it may at a grazing view
 /// of a coarse mesh, it is mirrored up again.
-fn mirrored(dir: DVec3, surface: &Surface, outside: bool) -> DVec3 {
-    let side = if outside { 1.0 } else { -1.0 };
+fn mirrored(dir: DVec3, surface: &Surface, inside: bool) -> DVec3 {
+    let side = if inside { -1.0 } else { 1.0 };
     let onward = reflect(dir, surface.shading * side);
     if surface.shading != surface.normal && !(onward.dot(surface.normal) * side > 0.0) {
         return reflect(onward, surface.normal * side);
@@ -231,8 +336,8 @@ fn mirrored(dir: DVec3, surface: &Surface, outside: bool) -> DVec3 {
 
 /// The refracted direction by the shading normal, or by the surface's own where the other faces away from the ray or
 /// sends it back to its side; `None` if it is totally reflected.
-fn refracted(dir: DVec3, surface: &Surface, outside: bool, from: f64, to: f64) -> Option<DVec3> {
-    let side = if outside { 1.0 } else { -1.0 };
+fn refracted(dir: DVec3, surface: &Surface, inside: bool, from: f64, to: f64) -> Option<DVec3> {
+    let side = if inside { -1.0 } else { 1.0 };
     let (normal, shading) = (surface.normal * side, surface.shading * side);
     if shading == normal || !(dir.dot(shading) < 0.0) {
         return refract(dir, normal, from, to);

@@ -2,39 +2,76 @@
 
 use std::ops::ControlFlow;
 
+use glam::DVec3;
+
+use super::signature::hash;
 use crate::{color::Rgb, geometry::Ray, scene::Scene};
 
-/// Asks for shadows; each worker has its own.
+/// The question how much of a light arrives at a hit, and the answer.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shadow {
+    /// The asker's own number of the hit.
+    pub(super) index: u32,
+    /// The unit vector to the light, and the cosine of its angle to the normal.
+    pub(super) to_light: DVec3,
+    pub(super) cosine: f64,
+    /// The part of each channel that arrives.
+    pub(super) transmittance: Rgb,
+    /// A hash of the transmissive surfaces on the way; zero if there are none.
+    pub(super) passed: u32,
+}
+
+/// Asks for the shadows of a batch of hits; each worker has its own.
 #[derive(Debug)]
 pub(super) struct Shadows<'a> {
     scene: &'a Scene,
-    /// The transmissive surfaces on the way, by distance: scratch that is kept from ray to ray.
-    passed: Vec<(f64, u32)>,
+    shadows: Vec<Shadow>,
+    rays: Vec<Ray>,
+    /// The transmissive surfaces on the way of each ray: the ray, the distance, the primitive.
+    passed: Vec<(u32, f64, u32)>,
 }
 
 impl<'a> Shadows<'a> {
     pub(super) fn new(scene: &'a Scene) -> Self {
-        Self { scene, passed: Vec::new() }
+        Self { scene, shadows: Vec::new(), rays: Vec::new(), passed: Vec::new() }
     }
 
-    /// The part of each channel that arrives from a light at `t = 1`: 0 behind anything opaque, and the product of the
-    /// transmissions of all surfaces crossed, without refraction.
-    pub(super) fn transmittance(&mut self, ray: &Ray) -> Rgb {
-        let (scene, passed) = (self.scene, &mut self.passed);
-        passed.clear();
-        let is_dark = scene.accel().any_crossing(ray, 1.0, |primitive, crossing| {
+    pub(super) fn clear(&mut self) {
+        self.shadows.clear();
+        self.rays.clear();
+        self.passed.clear();
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.rays.len()
+    }
+
+    /// Adds the question of hit `index`; `ray` has the light at `t = 1`.
+    pub(super) fn push(&mut self, index: u32, ray: Ray, to_light: DVec3, cosine: f64) {
+        self.rays.push(ray);
+        self.shadows.push(Shadow { index, to_light, cosine, transmittance: Rgb::ONE, passed: 0 });
+    }
+
+    /// Answers the questions: a transmittance of 0 behind anything opaque, and the product of the transmissions of all
+    /// surfaces crossed, without refraction. The rays end in the light at `target`.
+    pub(super) fn cast(&mut self, target: DVec3) -> &[Shadow] {
+        let Self { scene, shadows, rays, passed } = self;
+        scene.accel().any_crossing_packet(rays, target, |index, primitive, crossing| {
             if scene.material(primitive).is_transmissive() {
-                passed.push((crossing.t, primitive));
+                passed.push((index, crossing.t, primitive));
                 ControlFlow::Continue(())
             } else {
+                shadows[index as usize].transmittance = Rgb::ZERO;
                 ControlFlow::Break(())
             }
         });
-        if is_dark {
-            return Rgb::ZERO;
-        }
         // A product rounds differently in another order, and the tree's order is not the scene's.
-        passed.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        passed.iter().map(|(_, primitive)| scene.material(*primitive).transmission).product()
+        passed.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
+        for (index, _, primitive) in passed.iter() {
+            let shadow = &mut shadows[*index as usize];
+            shadow.transmittance *= scene.material(*primitive).transmission;
+            shadow.passed = shadow.passed.wrapping_add(hash(primitive + 1));
+        }
+        shadows
     }
 }

@@ -1,23 +1,37 @@
 //! The scenes inside the program. Their texts and pictures are part of the binary, so they render anywhere.
 
-use super::{Scene, desc::SceneDesc, error::SceneError};
+use super::{Scene, desc::SceneDesc, error::SceneError, generators, parts::Parts};
 use crate::texture::Image;
 
 /// A built-in scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Builtin {
     /// Its name.
     pub name: &'static str,
     /// What it shows, in a line.
     pub description: &'static str,
     text: &'static str,
+    /// Makes the scene with so many objects, for those that have as many as one likes.
+    generator: Option<fn(u32) -> Result<Parts, SceneError>>,
 }
 
-const BUILTINS: &[Builtin] = &[Builtin {
-    name: "assignment",
-    description: "mirror, glass, hollow and textured spheres, plaid cylinder and cone, a tetrahedron of six planes",
-    text: include_str!("assignment.toml"),
-}];
+/// The scene of any number of spheres, without the spheres.
+pub(super) const SPHERES: Builtin = Builtin {
+    name: "spheres",
+    description: "the stress scene: matte, mirror and glass spheres, as many as one likes (--objects)",
+    text: include_str!("spheres.toml"),
+    generator: Some(generators::spheres),
+};
+
+const BUILTINS: &[Builtin] = &[
+    Builtin {
+        name: "assignment",
+        description: "mirror, glass, hollow and textured spheres, plaid cylinder and cone, a tetrahedron of six planes",
+        text: include_str!("assignment.toml"),
+        generator: None,
+    },
+    SPHERES,
+];
 
 const PICTURES: &[(&str, &[u8])] = &[
     ("cat.png", include_bytes!("../../../textures/cat.png")),
@@ -39,6 +53,22 @@ impl Builtin {
             |source| SceneError::Syntax { name: self.name.to_owned(), source: Box::new(source) };
         toml::from_str(self.text).map_err(syntax)
     }
+
+    /// The scene's parts, with so many objects, or its usual number of them.
+    ///
+    /// # Errors
+    /// The objects are given by the description, but a number of them was asked for.
+    pub fn parts(&self, objects: Option<u32>) -> Result<Parts, SceneError> {
+        match (self.generator, objects) {
+            (Some(generator), objects) => generator(objects.unwrap_or(generators::DEFAULT_OBJECTS)),
+            (None, None) => Parts::try_new(&self.desc()?, &mut picture),
+            (None, Some(_)) => {
+                let generated = BUILTINS.iter().filter(|builtin| builtin.generator.is_some());
+                let known = generated.map(|builtin| builtin.name).collect::<Vec<_>>().join(", ");
+                Err(SceneError::NotGenerated { name: self.name.to_owned(), known })
+            }
+        }
+    }
 }
 
 /// The built-in scene of this name, ready to trace.
@@ -46,11 +76,19 @@ impl Builtin {
 /// # Errors
 /// No scene has this name.
 pub fn load_builtin(name: &str) -> Result<Scene, SceneError> {
+    load_builtin_of(name, None)
+}
+
+/// The built-in scene of this name with so many objects, or its usual number of them.
+///
+/// # Errors
+/// No scene has this name; or its objects are given by its description, but a number of them was asked for.
+pub fn load_builtin_of(name: &str, objects: Option<u32>) -> Result<Scene, SceneError> {
     let builtin = BUILTINS.iter().find(|builtin| builtin.name == name).ok_or_else(|| {
         let known = BUILTINS.iter().map(|builtin| builtin.name).collect::<Vec<_>>().join(", ");
         SceneError::UnknownScene { name: name.to_owned(), known }
     })?;
-    Scene::try_new(builtin.name, &builtin.desc()?, &mut picture)
+    Scene::assemble(builtin.name, builtin.parts(objects)?)
 }
 
 /// One of the program's own pictures.

@@ -1,0 +1,185 @@
+//! From primitives to a binary tree of boxes.
+//!
+//! obvhs merges neighbouring boxes along a space-filling curve (PLOC) and improves the result by reinsertion. It takes
+//! quadratic time where many merges cost exactly the same (equal boxes, or a row of them), so every box it is shown is
+//! a little larger than it must be, by a different amount.
+//!
+//! Sources: Meister & Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy Construction", *IEEE
+//! TVCG* 24(3), 2018; "Parallel Reinsertion for Bounding Volume Hierarchy Optimization", *Computer Graphics Forum*
+//! 37(2), 2018.
+
+use glam::{Vec3, Vec3A};
+use obvhs::{
+    BvhBuildParams,
+    aabb::Aabb,
+    bvh2::{node::Bvh2Node, reinsertion::ReinsertionOptimizer},
+    ploc::PlocBuilder,
+};
+use rayon::prelude::*;
+
+use super::{frame::Frame, node::Child};
+use crate::geometry::{Bounds, Shape};
+
+/// By how much a box may be larger than it must be, relative to its size.
+const JITTER: f32 = 1.0 / 1024.0;
+
+/// A primitive this many times as large as the median one may be kept out of the tree.
+const GIANT: f64 = 1e3;
+
+/// The most primitives kept out for their size; every ray tests each of them.
+const MAX_GIANTS: usize = 8;
+
+/// A binary tree; the two children of a node are next to each other, a leaf holds one primitive.
+pub(super) struct Binary {
+    /// The nodes, the root first.
+    pub(super) nodes: Vec<Bvh2Node>,
+    /// What the leaves' indices stand for.
+    pub(super) indices: Vec<u32>,
+}
+
+/// Which primitives go into the tree, which stay out, and the tree's frame.
+pub(super) struct Division {
+    /// The primitives in the tree, in ascending order.
+    pub(super) inside: Vec<u32>,
+    /// Those that every ray tests.
+    pub(super) outside: Vec<u32>,
+    /// The frame of the tree; `None` if nothing is in it.
+    pub(super) frame: Option<Frame>,
+}
+
+impl Division {
+    /// Divides `shapes`: what is not finite, or so large that the rest would be lost in its frame, stays out.
+    pub(super) fn of(shapes: &[Shape]) -> Self {
+        let sizes: Vec<f64> = shapes.par_iter().map(|s| s.bounds().size()).collect();
+        let mut outside = giants(shapes, &sizes);
+        outside.extend((0..).zip(&sizes).filter(|(_, s)| !s.is_finite()).map(|(k, _)| k));
+        outside.sort_unstable();
+        let mut inside: Vec<u32> = (0..shapes.len() as u32).collect();
+        inside.retain(|k| outside.binary_search(k).is_err());
+        let frame = Frame::new(&bounds_of(shapes, &inside));
+        if frame.is_none() || inside.is_empty() || shapes.len() >= Child::LIMIT {
+            return Self {
+                inside: Vec::new(),
+                outside: (0..shapes.len() as u32).collect(),
+                frame: None,
+            };
+        }
+        Self { inside, outside, frame }
+    }
+}
+
+fn bounds_of(shapes: &[Shape], which: &[u32]) -> Bounds {
+    which.par_iter().map(|k| shapes[*k as usize].bounds()).reduce(|| Bounds::EMPTY, Bounds::union)
+}
+
+/// The few primitives that dwarf the others, if the others alone take a much smaller frame.
+fn giants(shapes: &[Shape], sizes: &[f64]) -> Vec<u32> {
+    let mut sorted: Vec<f64> = sizes.iter().copied().filter(|s| s.is_finite()).collect();
+    if sorted.len() < 3 {
+        return Vec::new();
+    }
+    let middle = sorted.len() / 2;
+    let median = *sorted.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let is_giant = |size: f64| size.is_finite() && size > GIANT * median;
+    let giants: Vec<u32> =
+        (0..).zip(sizes).filter(|(_, s)| is_giant(**s)).map(|(k, _)| k).collect();
+    if giants.is_empty() || giants.len() > MAX_GIANTS {
+        return Vec::new();
+    }
+    let (all, rest) = shapes
+        .par_iter()
+        .zip(sizes.par_iter())
+        .filter(|(_, s)| s.is_finite())
+        .fold(
+            || (Bounds::EMPTY, Bounds::EMPTY),
+            |(all, rest), (shape, size)| {
+                let bounds = shape.bounds();
+                (all.union(bounds), if is_giant(*size) { rest } else { rest.union(bounds) })
+            },
+        )
+        .reduce(|| (Bounds::EMPTY, Bounds::EMPTY), |a, b| (a.0.union(b.0), a.1.union(b.1)));
+    if rest.size() < all.size() / 4.0 { giants } else { Vec::new() }
+}
+
+/// The boxes of the primitives `inside`, in the frame of the tree.
+pub(super) fn boxes(shapes: &[Shape], inside: &[u32], frame: &Frame) -> Vec<Aabb> {
+    inside
+        .par_iter()
+        .map(|k| {
+            let (min, max) = frame.outer_box(&shapes[*k as usize].bounds());
+            let (min, max) = (Vec3A::from_array(min), Vec3A::from_array(max));
+            let reach = (max - min).max_element() * JITTER;
+            let mut random = u64::from(*k);
+            Aabb {
+                min: min - unit_vector(&mut random) * reach,
+                max: max + unit_vector(&mut random) * reach,
+            }
+        })
+        .collect()
+}
+
+/// Three numbers from 0 to 1 (Steele, Lea & Flood, "Fast splittable pseudorandom number generators", 2014).
+fn unit_vector(state: &mut u64) -> Vec3A {
+    *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+    let mut z = *state;
+    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    z ^= z >> 31;
+    let part = |shift: u32| ((z >> shift) & 0x1f_ffff) as f32 / 2_097_152.0;
+    Vec3A::new(part(0), part(21), part(42))
+}
+
+/// The tree that obvhs builds over `boxes`, with more effort for a scene of `meshes` or of few primitives.
+pub(super) fn binary(boxes: &[Aabb], meshes: bool) -> Binary {
+    let params = if boxes.len() <= 10_000 {
+        BvhBuildParams::very_slow_build()
+    } else if meshes {
+        BvhBuildParams::medium_build()
+    } else {
+        BvhBuildParams::very_fast_build()
+    };
+    let indices = (0..boxes.len() as u32).collect();
+    let mut bvh = PlocBuilder::with_capacity(boxes.len()).build(
+        params.ploc_search_distance,
+        boxes,
+        indices,
+        params.sort_precision,
+        params.search_depth_threshold,
+    );
+    let mut optimizer = ReinsertionOptimizer::default();
+    for ratio in [1.0, params.post_collapse_reinsertion_batch_ratio_multiplier] {
+        optimizer.run(&mut bvh, params.reinsertion_batch_ratio * ratio, None);
+    }
+    Binary { nodes: bvh.nodes, indices: bvh.primitive_indices }
+}
+
+/// A balanced tree over `boxes`, for those of which obvhs makes too deep a tree: each node is cut in the middle of its
+/// primitives along its longest side.
+pub(super) fn balanced(boxes: &[Aabb]) -> Binary {
+    let mut indices: Vec<u32> = (0..boxes.len() as u32).collect();
+    let mut nodes = vec![Bvh2Node::default()];
+    let mut todo = vec![(0, 0, boxes.len())];
+    while let Some((node, start, end)) = todo.pop() {
+        let range = &mut indices[start..end];
+        let bounds = range.iter().fold(Aabb::empty(), |all, k| all.union(&boxes[*k as usize]));
+        if range.len() <= 1 {
+            nodes[node] = Bvh2Node::new(bounds, range.len() as u32, start as u32);
+            continue;
+        }
+        let axis = bounds.largest_axis();
+        let middle = range.len() / 2;
+        let center = |k: &u32| boxes[*k as usize].center()[axis];
+        range.select_nth_unstable_by(middle, |a, b| center(a).total_cmp(&center(b)));
+        let first = nodes.len();
+        nodes.extend([Bvh2Node::default(); 2]);
+        nodes[node] = Bvh2Node::new(bounds, 0, first as u32);
+        todo.push((first, start, start + middle));
+        todo.push((first + 1, start + middle, end));
+    }
+    Binary { nodes, indices }
+}
+
+/// The corners of a node's box.
+pub(super) fn corners(node: &Bvh2Node) -> ([f32; 3], [f32; 3]) {
+    (Vec3::to_array(&node.min), Vec3::to_array(&node.max))
+}

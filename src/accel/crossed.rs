@@ -1,0 +1,155 @@
+//! What a ray crosses on its way to an end.
+
+use std::ops::ControlFlow;
+
+use super::{
+    Accel, extreme,
+    frame::Entry,
+    leaf::{Candidates, LeafRay},
+    node::Content,
+    simd::{Kernel, Simd},
+    tree::Tree,
+    walk::{Visitor, walk},
+};
+use crate::geometry::{Crossing, Ray};
+
+/// The visit of all crossings, or the search for one with an opaque primitive.
+pub(super) struct Crossed<'a, B, V> {
+    pub(super) accel: &'a Accel,
+    pub(super) ray: &'a Ray,
+    pub(super) end: f64,
+    pub(super) opaque: B,
+    pub(super) visit: V,
+}
+
+impl<B, V> Kernel for Crossed<'_, B, V>
+where
+    B: Fn(u32) -> bool,
+    V: FnMut(u32, Crossing) -> ControlFlow<()>,
+{
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> bool {
+        let Self { accel, ray, end, opaque, visit } = self;
+        let mut test = Test { accel, ray, end, opaque, visit };
+        for place in accel.outside() {
+            if test.test(place) {
+                return true;
+            }
+        }
+        let Some(tree) = &accel.tree else { return false };
+        match tree.frame.enter(ray) {
+            Entry::Miss => false,
+            Entry::Ray(tree_ray) => {
+                let leaf_ray = LeafRay::new(simd, &tree_ray, end);
+                let (limit, left) = (tree_ray.end_above(end), accel.place_left(ray));
+                let mut search = Search { test, tree, leaf_ray, left, limit, stopped: false };
+                walk::<S, false>(simd, &tree.nodes, tree.root, &tree_ray, &mut search);
+                search.stopped
+            }
+            Entry::Extreme => {
+                let mut stopped = false;
+                let origin = tree.frame.point(ray.origin);
+                extreme::walk(&tree.nodes, tree.root, ray, origin, |leaf| {
+                    stopped = tree.places(leaf).any(|place| test.test(place));
+                    stopped
+                });
+                stopped
+            }
+        }
+    }
+}
+
+/// The test of one primitive in double precision.
+struct Test<'a, B, V> {
+    accel: &'a Accel,
+    ray: &'a Ray,
+    end: f64,
+    opaque: B,
+    visit: V,
+}
+
+impl<B, V> Test<'_, B, V>
+where
+    B: Fn(u32) -> bool,
+    V: FnMut(u32, Crossing) -> ControlFlow<()>,
+{
+    /// Whether the primitive in `place` stops the ray.
+    #[inline(always)]
+    fn test(&mut self, place: usize) -> bool {
+        let number = self.accel.numbers[place];
+        let [first, second] = self.accel.shapes[place].crossings_of(self.ray, number);
+        self.crosses(number, first) || self.crosses(number, second)
+    }
+
+    #[inline(always)]
+    fn crosses(&mut self, number: u32, crossing: Crossing) -> bool {
+        crossing.t > 0.0
+            && crossing.t < self.end
+            && ((self.opaque)(number) || (self.visit)(number, crossing).is_break())
+    }
+}
+
+struct Search<'a, S: Simd, B, V> {
+    test: Test<'a, B, V>,
+    tree: &'a Tree,
+    leaf_ray: LeafRay<S>,
+    left: u32,
+    limit: f32,
+    stopped: bool,
+}
+
+impl<S: Simd, B, V> Search<'_, S, B, V>
+where
+    B: Fn(u32) -> bool,
+    V: FnMut(u32, Crossing) -> ControlFlow<()>,
+{
+    /// Whether one of a leaf's candidates stops the ray: a certain hit of an opaque one does without further ado.
+    #[inline(always)]
+    fn take(&mut self, first: u32, candidates: &Candidates) -> bool {
+        let Candidates { mut maybe, certain, .. } = *candidates;
+        while maybe != 0 {
+            let lane = maybe.trailing_zeros() & 7;
+            maybe &= maybe - 1;
+            let place = first + lane;
+            let number = self.test.accel.numbers[place as usize];
+            if certain & 1 << lane != 0 && place != self.left && (self.test.opaque)(number)
+                || self.test.test(place as usize)
+            {
+                return true;
+            }
+        }
+        false
+    }
+}
+
+impl<S: Simd, B, V> Visitor<S> for Search<'_, S, B, V>
+where
+    B: Fn(u32) -> bool,
+    V: FnMut(u32, Crossing) -> ControlFlow<()>,
+{
+    #[inline(always)]
+    fn limit(&self) -> f32 {
+        self.limit
+    }
+
+    #[inline(always)]
+    fn leaf(&mut self, simd: S, leaf: Content) -> bool {
+        self.stopped = match leaf {
+            Content::Spheres(k) => {
+                let block = &self.tree.spheres[k];
+                let candidates = block.sort_out(simd, &self.leaf_ray, self.limit);
+                self.take(block.first, &candidates)
+            }
+            Content::Triangles(k) => {
+                let block = &self.tree.triangles[k];
+                let candidates = block.sort_out(simd, &self.leaf_ray, self.limit);
+                self.take(block.first, &candidates)
+            }
+            Content::One(place) => self.test.test(place),
+            Content::Node(_) => false,
+        };
+        self.stopped
+    }
+}

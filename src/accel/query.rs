@@ -1,0 +1,203 @@
+//! What a ray asks of the tree: the nearest hit.
+
+use super::{
+    Accel, extreme,
+    frame::{Entry, TreeRay},
+    leaf::{Candidates, LeafRay},
+    node::Content,
+    simd::{Kernel, Simd},
+    tree::Tree,
+    walk::{Visitor, walk},
+};
+use crate::geometry::{Crossing, Hit, Ray};
+
+/// The best hit so far, decided in double precision.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Best {
+    /// Its parameter, or the end of the ray.
+    pub(super) t: f64,
+    /// Its primitive; before there is a hit 0, which nothing undercuts.
+    primitive: u32,
+    face: u8,
+    is_hit: bool,
+}
+
+impl Best {
+    #[inline(always)]
+    pub(super) fn before(end: f64) -> Self {
+        Self { t: end, primitive: 0, face: 0, is_hit: false }
+    }
+
+    /// Takes the crossing if it is better: nearer, or as near and of a lower primitive.
+    #[inline(always)]
+    fn offer(&mut self, crossing: Crossing, primitive: u32) {
+        let t = crossing.t;
+        if t > 0.0 && (t < self.t || t == self.t && primitive < self.primitive) {
+            *self = Self { t, primitive, face: crossing.face, is_hit: true };
+        }
+    }
+
+    /// Offers the crossings of the primitive in `place`.
+    #[inline(always)]
+    pub(super) fn test(&mut self, accel: &Accel, ray: &Ray, place: usize) {
+        let number = accel.numbers[place];
+        let [first, second] = accel.shapes[place].crossings_of(ray, number);
+        self.offer(first, number);
+        self.offer(second, number);
+    }
+
+    #[inline(always)]
+    pub(super) fn hit(&self) -> Option<Hit> {
+        let Self { t, primitive, face, is_hit } = *self;
+        is_hit.then_some(Hit { t, primitive, face })
+    }
+}
+
+/// The search for the nearest hit.
+pub(super) struct Nearest<'a> {
+    pub(super) accel: &'a Accel,
+    pub(super) ray: &'a Ray,
+    pub(super) end: f64,
+}
+
+impl Kernel for Nearest<'_> {
+    type Output = Option<Hit>;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Option<Hit> {
+        let Self { accel, ray, end } = self;
+        let mut best = Best::before(end);
+        for place in accel.outside() {
+            best.test(accel, ray, place);
+        }
+        if let Some(tree) = &accel.tree {
+            match tree.frame.enter(ray) {
+                Entry::Miss => {}
+                Entry::Ray(tree_ray) => {
+                    let mut search = Search::new(simd, accel, tree, ray, tree_ray, best);
+                    walk::<S, true>(simd, &tree.nodes, tree.root, &tree_ray, &mut search);
+                    best = search.finish();
+                }
+                Entry::Extreme => {
+                    let origin = tree.frame.point(ray.origin);
+                    extreme::walk(&tree.nodes, tree.root, ray, origin, |leaf| {
+                        tree.places(leaf).for_each(|place| best.test(accel, ray, place));
+                        false
+                    });
+                }
+            }
+        }
+        best.hit()
+    }
+}
+
+/// A certain hit that has not been decided in double precision, because it may never matter.
+#[derive(Clone, Copy)]
+struct Pending {
+    place: u32,
+    /// Its parameter in the tree's frame is not less than this.
+    from: f32,
+}
+
+impl Pending {
+    const NONE: Self = Self { place: u32::MAX, from: f32::INFINITY };
+}
+
+struct Search<'a, S: Simd> {
+    accel: &'a Accel,
+    tree: &'a Tree,
+    ray: &'a Ray,
+    tree_ray: TreeRay,
+    leaf_ray: LeafRay<S>,
+    /// The place of the primitive that the ray leaves, whose own test alone knows what that means.
+    left: u32,
+    /// No hit beyond this parameter, in the tree's frame, can be the nearest.
+    limit: f32,
+    best: Best,
+    pending: Pending,
+}
+
+impl<'a, S: Simd> Search<'a, S> {
+    #[inline(always)]
+    fn new(
+        simd: S,
+        accel: &'a Accel,
+        tree: &'a Tree,
+        ray: &'a Ray,
+        tree_ray: TreeRay,
+        best: Best,
+    ) -> Self {
+        let leaf_ray = LeafRay::new(simd, &tree_ray, best.t);
+        let limit = tree_ray.end_above(best.t);
+        let left = accel.place_left(ray);
+        let pending = Pending::NONE;
+        Self { accel, tree, ray, tree_ray, leaf_ray, left, limit, best, pending }
+    }
+
+    /// Decides the primitive in `place`.
+    #[inline(always)]
+    fn test(&mut self, place: u32) {
+        self.best.test(self.accel, self.ray, place as usize);
+        self.limit = self.limit.min(self.tree_ray.end_above(self.best.t));
+    }
+
+    /// Takes the candidates of a leaf.
+    ///
+    /// A pending hit loses to one that ends before it starts; where intervals overlap, both are decided.
+    #[inline(always)]
+    fn take(&mut self, first: u32, candidates: &Candidates) {
+        let Candidates { mut maybe, certain, from, to } = *candidates;
+        while maybe != 0 {
+            let lane = maybe.trailing_zeros() & 7;
+            maybe &= maybe - 1;
+            let place = first + lane;
+            if certain & 1 << lane == 0 || place == self.left {
+                self.test(place);
+                continue;
+            }
+            let (from, to) = (from.0[lane as usize], to.0[lane as usize]);
+            if from > self.limit {
+                continue;
+            }
+            if to >= self.pending.from && self.pending.place != u32::MAX {
+                self.test(self.pending.place);
+            }
+            self.pending = Pending { place, from };
+            self.limit = self.limit.min(to);
+        }
+    }
+
+    #[inline(always)]
+    fn finish(mut self) -> Best {
+        if self.pending.place != u32::MAX && self.pending.from <= self.limit {
+            self.test(self.pending.place);
+        }
+        self.best
+    }
+}
+
+impl<S: Simd> Visitor<S> for Search<'_, S> {
+    #[inline(always)]
+    fn limit(&self) -> f32 {
+        self.limit
+    }
+
+    #[inline(always)]
+    fn leaf(&mut self, simd: S, leaf: Content) -> bool {
+        match leaf {
+            Content::Spheres(k) => {
+                let block = &self.tree.spheres[k];
+                let candidates = block.sort_out(simd, &self.leaf_ray, self.limit);
+                self.take(block.first, &candidates);
+            }
+            Content::Triangles(k) => {
+                let block = &self.tree.triangles[k];
+                let candidates = block.sort_out(simd, &self.leaf_ray, self.limit);
+                self.take(block.first, &candidates);
+            }
+            Content::One(place) => self.test(place as u32),
+            Content::Node(_) => {}
+        }
+        false
+    }
+}

@@ -1,0 +1,189 @@
+//! Eight single-precision numbers at once, and which instructions do it.
+//!
+//! A [`Kernel`] is written once against [`Simd`] and compiled for each instruction set. All its callees must be
+//! `#[inline(always)]`, or the compiler builds them for the baseline and every operation becomes a call; then
+//! `f64::mul_add` in the shapes' own tests is an instruction too, with the same result as the library's function.
+
+/// Which instructions the queries use; the answers do not depend on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Isa {
+    /// What every machine has.
+    Portable,
+    /// AVX2 and FMA of x86-64.
+    Avx2,
+}
+
+impl Isa {
+    /// All there are.
+    pub const ALL: [Self; 2] = [Self::Portable, Self::Avx2];
+
+    /// The fastest that this machine has.
+    pub fn detect() -> Self {
+        if Self::Avx2.is_available() { Self::Avx2 } else { Self::Portable }
+    }
+
+    /// Whether this machine has it.
+    pub fn is_available(self) -> bool {
+        match self {
+            Self::Portable => true,
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => super::simd_x86::Avx2::detect().is_some(),
+            #[cfg(not(target_arch = "x86_64"))]
+            Self::Avx2 => false,
+        }
+    }
+}
+
+/// Something to be computed with any instructions.
+pub(super) trait Kernel {
+    type Output;
+
+    /// Must be `#[inline(always)]`.
+    fn run<S: Simd>(self, simd: S) -> Self::Output;
+}
+
+/// Runs `kernel` with the instructions of `isa`, or the portable ones where the machine lacks them.
+#[inline(always)]
+pub(super) fn dispatch<K: Kernel>(isa: Isa, kernel: K) -> K::Output {
+    match isa {
+        #[cfg(target_arch = "x86_64")]
+        Isa::Avx2 => match super::simd_x86::Avx2::detect() {
+            Some(avx2) => avx2.vectorize(kernel),
+            None => Portable.vectorize(kernel),
+        },
+        _ => Portable.vectorize(kernel),
+    }
+}
+
+/// Eight lanes, aligned.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub(super) struct Lanes(pub(super) [f32; 8]);
+
+/// An instruction set; a value of the type proves that the machine has it.
+pub(super) trait Simd: Copy {
+    /// Eight numbers.
+    type F: Copy;
+
+    /// Runs a kernel compiled for these instructions.
+    fn vectorize<K: Kernel>(self, kernel: K) -> K::Output;
+
+    fn splat(self, x: f32) -> Self::F;
+    fn load(self, x: &[f32; 8]) -> Self::F;
+    fn store(self, x: Self::F) -> Lanes;
+    fn add(self, a: Self::F, b: Self::F) -> Self::F;
+    fn sub(self, a: Self::F, b: Self::F) -> Self::F;
+    fn mul(self, a: Self::F, b: Self::F) -> Self::F;
+    fn div(self, a: Self::F, b: Self::F) -> Self::F;
+    /// `a b + c`, rounded once or twice.
+    fn mul_add(self, a: Self::F, b: Self::F, c: Self::F) -> Self::F;
+    /// `a b − c`, rounded once or twice.
+    fn mul_sub(self, a: Self::F, b: Self::F, c: Self::F) -> Self::F;
+    /// `c − a b`, rounded once or twice.
+    fn neg_mul_add(self, a: Self::F, b: Self::F, c: Self::F) -> Self::F;
+    /// The smaller, or `b` where either is NaN.
+    fn min(self, a: Self::F, b: Self::F) -> Self::F;
+    /// The larger, or `b` where either is NaN.
+    fn max(self, a: Self::F, b: Self::F) -> Self::F;
+    fn sqrt(self, a: Self::F) -> Self::F;
+    /// `a`, with the other sign where that of `b` is negative.
+    fn toggle_sign(self, a: Self::F, b: Self::F) -> Self::F;
+    /// A bit for each lane in which `a ≤ b`; none where either is NaN.
+    fn le(self, a: Self::F, b: Self::F) -> u32;
+}
+
+/// Plain arithmetic, for every machine.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Portable;
+
+impl Portable {
+    #[inline(always)]
+    fn zip(a: Lanes, b: Lanes, f: impl Fn(f32, f32) -> f32) -> Lanes {
+        Lanes(std::array::from_fn(|k| f(a.0[k], b.0[k])))
+    }
+}
+
+impl Simd for Portable {
+    type F = Lanes;
+
+    #[inline(always)]
+    fn vectorize<K: Kernel>(self, kernel: K) -> K::Output {
+        kernel.run(self)
+    }
+
+    #[inline(always)]
+    fn splat(self, x: f32) -> Lanes {
+        Lanes([x; 8])
+    }
+
+    #[inline(always)]
+    fn load(self, x: &[f32; 8]) -> Lanes {
+        Lanes(*x)
+    }
+
+    #[inline(always)]
+    fn store(self, x: Lanes) -> Lanes {
+        x
+    }
+
+    #[inline(always)]
+    fn add(self, a: Lanes, b: Lanes) -> Lanes {
+        Self::zip(a, b, |a, b| a + b)
+    }
+
+    #[inline(always)]
+    fn sub(self, a: Lanes, b: Lanes) -> Lanes {
+        Self::zip(a, b, |a, b| a - b)
+    }
+
+    #[inline(always)]
+    fn mul(self, a: Lanes, b: Lanes) -> Lanes {
+        Self::zip(a, b, |a, b| a * b)
+    }
+
+    #[inline(always)]
+    fn div(self, a: Lanes, b: Lanes) -> Lanes {
+        Self::zip(a, b, |a, b| a / b)
+    }
+
+    #[inline(always)]
+    fn mul_add(self, a: Lanes, b: Lanes, c: Lanes) -> Lanes {
+        self.add(self.mul(a, b), c)
+    }
+
+    #[inline(always)]
+    fn mul_sub(self, a: Lanes, b: Lanes, c: Lanes) -> Lanes {
+        self.sub(self.mul(a, b), c)
+    }
+
+    #[inline(always)]
+    fn neg_mul_add(self, a: Lanes, b: Lanes, c: Lanes) -> Lanes {
+        self.sub(c, self.mul(a, b))
+    }
+
+    #[inline(always)]
+    fn min(self, a: Lanes, b: Lanes) -> Lanes {
+        Self::zip(a, b, |a, b| if a < b { a } else { b })
+    }
+
+    #[inline(always)]
+    fn max(self, a: Lanes, b: Lanes) -> Lanes {
+        Self::zip(a, b, |a, b| if a > b { a } else { b })
+    }
+
+    #[inline(always)]
+    fn sqrt(self, a: Lanes) -> Lanes {
+        Lanes(a.0.map(f32::sqrt))
+    }
+
+    #[inline(always)]
+    fn toggle_sign(self, a: Lanes, b: Lanes) -> Lanes {
+        Self::zip(a, b, |a, b| f32::from_bits(a.to_bits() ^ (b.to_bits() & 1 << 31)))
+    }
+
+    #[inline(always)]
+    fn le(self, a: Lanes, b: Lanes) -> u32 {
+        (0..8).fold(0, |bits, k| bits | u32::from(a.0[k] <= b.0[k]) << k)
+    }
+}

@@ -1,0 +1,174 @@
+//! The way of a ray through the tree.
+#![allow(
+    unsafe_code,
+    reason = "the stack is not initialised for every ray, which took a fifth of the time"
+)]
+
+use std::mem::MaybeUninit;
+
+use super::{
+    frame::TreeRay,
+    node::{Child, Content, Node, WIDTH},
+    simd::Simd,
+};
+
+/// The most nodes from the root to a leaf; the builder keeps to it.
+pub(super) const MAX_DEPTH: usize = 36;
+
+/// Each node on the way down leaves at most all but one of its children to be visited later.
+const STACK: usize = MAX_DEPTH * (WIDTH - 1) + 1;
+
+/// What is to be done at the leaves.
+pub(super) trait Visitor<S: Simd> {
+    /// The parameter in the tree's frame beyond which nothing is of interest.
+    fn limit(&self) -> f32;
+
+    /// Tries the primitives of a leaf; returns whether to stop. Must be `#[inline(always)]`.
+    fn leaf(&mut self, simd: S, leaf: Content) -> bool;
+}
+
+/// A ray made ready for the tests of boxes.
+#[derive(Clone, Copy)]
+struct Slabs<S: Simd> {
+    inverse: [S::F; 3],
+    /// The origin times that.
+    offset: [S::F; 3],
+    /// Which rows of a node's planes are met first, and which last.
+    near: [usize; 3],
+    far: [usize; 3],
+}
+
+impl<S: Simd> Slabs<S> {
+    #[inline(always)]
+    fn new(simd: S, ray: &TreeRay) -> Self {
+        let inverse = ray.inverse();
+        let row = |axis: usize| if inverse[axis].is_sign_negative() { axis + 3 } else { axis };
+        let near = [row(0), row(1), row(2)];
+        let far = [3 - near[0], 5 - near[1], 7 - near[2]];
+        let [o, i] = [ray.origin, inverse];
+        let offset = [simd.splat(o[0] * i[0]), simd.splat(o[1] * i[1]), simd.splat(o[2] * i[2])];
+        let inverse = [simd.splat(i[0]), simd.splat(i[1]), simd.splat(i[2])];
+        Self { inverse, offset, near, far }
+    }
+
+    /// Which children of `node` the ray may meet before `limit`, and where it enters each.
+    ///
+    /// A product and a difference with one rounding (or two, in the portable version), of numbers whose error the pads
+    /// cover; the inverse is finite, so nothing here is NaN.
+    #[inline(always)]
+    fn test(&self, simd: S, node: &Node, limit: f32) -> (u32, S::F) {
+        let (planes, i, o) = (&node.planes, &self.inverse, &self.offset);
+        let enter_x = simd.mul_sub(simd.load(&planes[self.near[0]]), i[0], o[0]);
+        let enter_y = simd.mul_sub(simd.load(&planes[self.near[1]]), i[1], o[1]);
+        let enter_z = simd.mul_sub(simd.load(&planes[self.near[2]]), i[2], o[2]);
+        let leave_x = simd.mul_sub(simd.load(&planes[self.far[0]]), i[0], o[0]);
+        let leave_y = simd.mul_sub(simd.load(&planes[self.far[1]]), i[1], o[1]);
+        let leave_z = simd.mul_sub(simd.load(&planes[self.far[2]]), i[2], o[2]);
+        let enter = simd.max(simd.max(enter_x, enter_y), simd.max(enter_z, simd.splat(0.0)));
+        let leave = simd.min(simd.min(leave_x, leave_y), simd.min(leave_z, simd.splat(limit)));
+        (simd.le(enter, leave), enter)
+    }
+}
+
+/// Children still to be visited, each with the parameter at which the ray enters it: the parameter's bits above the
+/// child's word, so that of two (not negative) entries the nearer is the smaller number.
+struct Stack {
+    slots: [MaybeUninit<u64>; STACK],
+    len: usize,
+}
+
+impl Stack {
+    #[inline(always)]
+    fn new() -> Self {
+        Self { slots: [const { MaybeUninit::uninit() }; STACK], len: 0 }
+    }
+
+    #[inline(always)]
+    fn push(&mut self, key: u64) {
+        self.slots[self.len].write(key);
+        self.len += 1;
+    }
+
+    #[inline(always)]
+    fn get(&self, k: usize) -> u64 {
+        assert!(k < self.len);
+        // SAFETY: every slot below `len` has been written, by `push` alone does `len` grow.
+        unsafe { self.slots[k].assume_init() }
+    }
+
+    #[inline(always)]
+    fn pop(&mut self) -> Option<u64> {
+        let last = self.len.checked_sub(1)?;
+        let key = self.get(last);
+        self.len = last;
+        Some(key)
+    }
+
+    /// Moves the key at the top down past the smaller ones that were pushed since the stack had `base` keys.
+    #[inline(always)]
+    fn sink(&mut self, base: usize) {
+        let mut k = self.len - 1;
+        let key = self.get(k);
+        while k > base && self.get(k - 1) < key {
+            self.slots[k].write(self.get(k - 1));
+            k -= 1;
+        }
+        self.slots[k].write(key);
+    }
+}
+
+#[inline(always)]
+fn key(enter: f32, child: Child) -> u64 {
+    u64::from(enter.to_bits()) << 32 | u64::from(child.word())
+}
+
+/// Shows `visitor` the leaves that `ray` may meet; with `SORTED`, nearer ones first as far as the boxes tell.
+#[inline(always)]
+pub(super) fn walk<S: Simd, const SORTED: bool>(
+    simd: S,
+    nodes: &[Node],
+    root: Child,
+    ray: &TreeRay,
+    visitor: &mut impl Visitor<S>,
+) {
+    if !(visitor.limit() >= 0.0) {
+        return;
+    }
+    let slabs = Slabs::new(simd, ray);
+    let mut stack = Stack::new();
+    let mut child = root;
+    loop {
+        if let Content::Node(k) = child.content() {
+            let node = &nodes[k];
+            let (mut met, enter) = slabs.test(simd, node, visitor.limit());
+            if met != 0 {
+                let first = (met.trailing_zeros() & 7) as usize;
+                met &= met - 1;
+                if met == 0 {
+                    child = node.children[first];
+                    continue;
+                }
+                let enter = simd.store(enter).0;
+                let base = stack.len;
+                stack.push(key(enter[first], node.children[first]));
+                while met != 0 {
+                    let next = (met.trailing_zeros() & 7) as usize;
+                    met &= met - 1;
+                    stack.push(key(enter[next], node.children[next]));
+                    if SORTED {
+                        stack.sink(base);
+                    }
+                }
+            }
+        } else if visitor.leaf(simd, child.content()) {
+            return;
+        }
+        loop {
+            let Some(key) = stack.pop() else { return };
+            if f32::from_bits((key >> 32) as u32) <= visitor.limit() {
+                child = Child::from_word(key as u32);
+                break;
+            }
+        }
+    }
+}

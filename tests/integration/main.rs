@@ -1,0 +1,10 @@
+//! Tests of the whole library against answers that it did not compute: one binary, a module for each behaviour.
+
+#![allow(clippy::print_stdout, reason = "a test's table is read with --nocapture")]
+
+mod determinism;
+mod extremes;
+mod numerics;
+mod objects;
+mod references;
+mod support;
