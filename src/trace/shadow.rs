@@ -25,7 +25,7 @@ pub(super) struct Shadow {
 #[derive(Debug)]
 pub(super) struct Shadows<'a> {
     scene: &'a Scene,
-    shadows: Vec<Shadow>,
+    questions: Vec<Shadow>,
     rays: Vec<Ray>,
     /// The transmissive surfaces on the way of each ray: the ray, the distance, the primitive.
     passed: Vec<(u32, f64, u32)>,
@@ -33,11 +33,11 @@ pub(super) struct Shadows<'a> {
 
 impl<'a> Shadows<'a> {
     pub(super) fn new(scene: &'a Scene) -> Self {
-        Self { scene, shadows: Vec::new(), rays: Vec::new(), passed: Vec::new() }
+        Self { scene, questions: Vec::new(), rays: Vec::new(), passed: Vec::new() }
     }
 
     pub(super) fn clear(&mut self) {
-        self.shadows.clear();
+        self.questions.clear();
         self.rays.clear();
         self.passed.clear();
     }
@@ -49,29 +49,29 @@ impl<'a> Shadows<'a> {
     /// Adds the question of hit `index`; `ray` has the light at `t = 1`.
     pub(super) fn push(&mut self, index: u32, ray: Ray, to_light: DVec3, cosine: f64) {
         self.rays.push(ray);
-        self.shadows.push(Shadow { index, to_light, cosine, transmittance: Rgb::ONE, passed: 0 });
+        self.questions.push(Shadow { index, to_light, cosine, transmittance: Rgb::ONE, passed: 0 });
     }
 
     /// Answers the questions: a transmittance of 0 behind anything opaque, and the product of the transmissions of all
     /// surfaces crossed, without refraction. The rays end in the light at `target`.
     pub(super) fn cast(&mut self, target: DVec3) -> &[Shadow] {
-        let Self { scene, shadows, rays, passed } = self;
+        let Self { scene, questions, rays, passed } = self;
         scene.accel().any_crossing_packet(rays, target, |index, primitive, crossing| {
             if scene.material(primitive).is_transmissive() {
                 passed.push((index, crossing.t, primitive));
                 ControlFlow::Continue(())
             } else {
-                shadows[index as usize].transmittance = Rgb::ZERO;
+                questions[index as usize].transmittance = Rgb::ZERO;
                 ControlFlow::Break(())
             }
         });
         // A product rounds differently in another order, and the tree's order is not the scene's.
         passed.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
         for (index, _, primitive) in passed.iter() {
-            let shadow = &mut shadows[*index as usize];
+            let shadow = &mut questions[*index as usize];
             shadow.transmittance *= scene.material(*primitive).transmission;
             shadow.passed = shadow.passed.wrapping_add(hash(primitive + 1));
         }
-        shadows
+        questions
     }
 }
