@@ -102,6 +102,11 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "DEGREES", value_parser = parse_angle, allow_negative_numbers = true)]
     pub(crate) fov: Option<f64>,
 
+    /// Shading rules: whitted, or classic (those that ray counts of the Standard Procedural Databases
+    /// are compared by: 513x513 rays through the corners of 512x512 pixels)
+    #[arg(long, value_name = "RULES", value_enum, default_value_t)]
+    pub(crate) rules: Rules,
+
     /// What would be a warning is an error
     #[arg(long)]
     pub(crate) strict: bool,
@@ -117,6 +122,15 @@ pub(crate) struct RenderArgs {
     /// Nothing on standard error but errors
     #[arg(short, long)]
     pub(crate) quiet: bool,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Rules {
+    /// Those of the assignment
+    #[default]
+    Whitted,
+    /// Those of the Standard Procedural Databases
+    Classic,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]

@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context, anyhow};
+use whitted::classic::{CLASSIC_SIZE, render_classic};
 use whitted::film::{FileError, Film, OutputFile, WholeFile, encode};
-use whitted::render::{RenderOptions, Rendering};
+use whitted::render::{RayCounts, RenderOptions, Rendering};
 use whitted::scene::{LoadOptions, Loaded, Scene};
 
-use super::args::{ProgressMode, RenderArgs};
+use super::args::{ProgressMode, RenderArgs, Rules};
 use super::failure::{Failure, warn};
 use super::progress::Reporter;
 use super::stats::{Seconds, Statistics};
@@ -17,6 +18,12 @@ use super::{memory, streams};
 
 /// Renders as `args` say; `started` is when the program did.
 pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
+    let is_classic = args.rules == Rules::Classic;
+    if is_classic && (args.size.is_some() || args.depth.is_some()) {
+        return Err(Failure::usage(anyhow!(
+            "--rules classic: size and depth are part of the rules; leave out --size and --depth"
+        )));
+    }
     let loading = Instant::now();
     let load_options = LoadOptions {
         models: args.models.clone(),
@@ -25,6 +32,7 @@ pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
         up: args.up,
         fov: args.fov,
         objects: args.objects,
+        rows: is_classic.then_some(CLASSIC_SIZE),
     };
     let Loaded { scene, warnings } = whitted::scene::load(&args.scene, &load_options)?;
     warn(&warnings, args.strict, args.quiet)?;
@@ -41,7 +49,11 @@ pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
     let rendering = {
         let mode = if args.quiet { ProgressMode::None } else { args.progress };
         let reporter = Reporter::new(mode);
-        whitted::render::render(&scene, &options, &|progress| reporter.report(&progress))?
+        if is_classic {
+            render_classic(&scene, args.threads)?
+        } else {
+            whitted::render::render(&scene, &options, &|progress| reporter.report(&progress))?
+        }
     };
 
     let name = picture.name();
@@ -56,6 +68,13 @@ pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
     // Under `json`, standard error is for programs, and they have the statistics.
     if !args.quiet && args.progress != ProgressMode::Json {
         streams::note(&summary(&name, args, &rendering, total));
+        if is_classic {
+            let RayCounts { camera_hit, reflected, refracted, shadow, .. } = rendering.rays;
+            streams::note(&format!(
+                "classic rules: {camera_hit} eye rays that hit, {reflected} reflected, {refracted} \
+                 refracted, {shadow} shadow"
+            ));
+        }
     }
     Ok(())
 }

@@ -297,6 +297,11 @@ impl Face {
         if side * offset.dot(surface.normal) > 0.0 { offset } else { DVec3::ZERO }
     }
 
+    /// Whether the face has normals at its corners.
+    pub fn is_smooth(&self) -> bool {
+        self.corner_normals().is_some()
+    }
+
     /// Whether the mesh has surface coordinates.
     pub fn has_uv(&self) -> bool {
         !self.mesh.attributes.uvs.is_empty()

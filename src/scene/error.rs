@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::obj::ModelError;
+use super::{nff::NffError, obj::ModelError};
 use crate::{camera::CameraError, geometry::ShapeError, texture::ImageTextureError};
 
 /// Why there is no scene to render.
@@ -34,7 +34,7 @@ pub enum SceneError {
         source: Box<toml::de::Error>,
     },
     /// The argument is neither a built-in scene nor a file of a known kind.
-    #[error("unknown scene `{name}`: no built-in scene ({known}), and no .obj file")]
+    #[error("unknown scene `{name}`: no built-in scene ({known}), and no .nff or .obj file")]
     UnknownFile {
         /// What was asked for.
         name: String,
@@ -44,6 +44,9 @@ pub enum SceneError {
     /// A model cannot be used.
     #[error(transparent)]
     Model(#[from] ModelError),
+    /// An NFF file is not a scene.
+    #[error(transparent)]
+    Nff(#[from] NffError),
     /// An object uses a material that is not defined.
     #[error("object {object} uses material `{material}`, which is not defined (known: {known})")]
     UnknownMaterial {

@@ -9,6 +9,7 @@ pub mod desc;
 pub mod error;
 pub mod generators;
 pub mod load;
+pub mod nff;
 pub mod obj;
 pub mod open;
 mod parts;

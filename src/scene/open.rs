@@ -8,6 +8,7 @@ use super::{
     Scene,
     builtin::builtins,
     error::SceneError,
+    nff,
     obj::{self, Model, ModelError},
     parts::{CameraPlan, Parts, Placement},
     stage,
@@ -30,6 +31,9 @@ pub struct LoadOptions {
     pub up: Option<DVec3>,
     /// The vertical field of view in degrees.
     pub fov: Option<f64>,
+    /// The number of pixel rows, where a file gives its field of view between the outermost ones; the file's own number
+    /// if not given.
+    pub rows: Option<u32>,
 }
 
 /// A model to add to a scene.
@@ -67,11 +71,17 @@ pub fn load(name: &str, options: &LoadOptions) -> Result<Loaded, SceneError> {
             let known = "spheres".to_owned();
             return Err(SceneError::NotGenerated { name: name.to_owned(), known });
         }
-        let parts = if let Some("obj") = kind.as_deref() {
-            model_alone(path, options, &mut warnings)?
-        } else {
-            let known = builtins().iter().map(|b| b.name).collect::<Vec<_>>().join(", ");
-            return Err(SceneError::UnknownFile { name: name.to_owned(), known });
+        let parts = match kind.as_deref() {
+            Some("obj") => model_alone(path, options, &mut warnings)?,
+            Some("nff") => {
+                let scene = nff::load_nff(path, options.rows)?;
+                warnings.extend(scene.warnings);
+                scene.parts
+            }
+            _ => {
+                let known = builtins().iter().map(|b| b.name).collect::<Vec<_>>().join(", ");
+                return Err(SceneError::UnknownFile { name: name.to_owned(), known });
+            }
         };
         let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         (stem, parts)

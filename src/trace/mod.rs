@@ -6,6 +6,7 @@
 //! are cheaper together. What a sample becomes does not depend on the batches: its parts are summed in fixed
 //! point ([`sum`]), where order does not matter.
 
+pub mod classic;
 mod counts;
 mod shadow;
 mod signature;

@@ -45,6 +45,12 @@ impl<'a> Tokens<'a> {
         (end > 0).then_some(token)
     }
 
+    /// How many bytes of the line are left.
+    #[inline]
+    pub fn left(&self) -> usize {
+        self.rest.len()
+    }
+
     /// All that is left of the line, as a name that may have blanks inside: trimmed, without comment and quotes.
     pub fn rest_as_name(self) -> &'a [u8] {
         let mut end = self.rest.len();

@@ -1,0 +1,1 @@
+//! Broken and odd files, each with what is said about it.
