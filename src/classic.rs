@@ -11,7 +11,7 @@ pub use crate::trace::classic::CLASSIC_DEPTH;
 use crate::{
     color::Rgb,
     film::{Film, Tile},
-    render::{RayCounts, RenderError, Rendering},
+    render::{Outcome, RayCounts, RenderError, Rendering},
     scene::Scene,
     trace::classic::ClassicTracer,
 };
@@ -59,5 +59,14 @@ pub fn render_classic(
     }
     let rays = rows.iter().fold(RayCounts::default(), |sum, (_, counts)| sum + *counts);
     let seconds = started.elapsed().as_secs_f64();
-    Ok(Rendering { film, rays, threads, seconds, depth: CLASSIC_DEPTH })
+    Ok(Rendering {
+        errors: vec![0.0; rows.len().saturating_sub(1).pow(2)],
+        estimated_rmse: 0.0,
+        outcome: Outcome::default(),
+        film,
+        rays,
+        threads,
+        seconds,
+        depth: CLASSIC_DEPTH,
+    })
 }

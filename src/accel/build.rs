@@ -129,11 +129,12 @@ fn unit_vector(state: &mut u64) -> Vec3A {
     Vec3A::new(part(0), part(21), part(42))
 }
 
-/// The tree that obvhs builds over `boxes`, with more effort for a scene of `meshes` or of few primitives.
+/// The tree that obvhs builds over `boxes`, with more effort for a scene of `meshes` or of few primitives, as long as it
+/// takes less time than the rays of a small picture.
 pub(super) fn binary(boxes: &[Aabb], meshes: bool) -> Binary {
-    let params = if boxes.len() <= 10_000 {
+    let params = if boxes.len() <= 2_000 {
         BvhBuildParams::very_slow_build()
-    } else if meshes {
+    } else if meshes || boxes.len() <= 20_000 {
         BvhBuildParams::medium_build()
     } else {
         BvhBuildParams::very_fast_build()

@@ -34,7 +34,7 @@ where
         let Self { accel, ray, end, opaque, visit } = self;
         let mut test = Test { accel, ray, end, opaque, visit };
         for place in accel.outside() {
-            if test.test(place) {
+            if test.test(simd, place) {
                 return true;
             }
         }
@@ -52,7 +52,7 @@ where
                 let mut stopped = false;
                 let origin = tree.frame.point(ray.origin);
                 extreme::walk(&tree.nodes, tree.root, ray, origin, |leaf| {
-                    stopped = tree.places(leaf).any(|place| test.test(place));
+                    stopped = tree.places(leaf).any(|place| test.test(simd, place));
                     stopped
                 });
                 stopped
@@ -77,9 +77,9 @@ where
 {
     /// Whether the primitive in `place` stops the ray.
     #[inline(always)]
-    fn test(&mut self, place: usize) -> bool {
+    fn test<S: Simd>(&mut self, simd: S, place: usize) -> bool {
         let number = self.accel.numbers[place];
-        let [first, second] = self.accel.shapes[place].crossings_of(self.ray, number);
+        let [first, second] = simd.crossings(&self.accel.shapes[place], self.ray, number);
         self.crosses(number, first) || self.crosses(number, second)
     }
 
@@ -107,7 +107,7 @@ where
 {
     /// Whether one of a leaf's candidates stops the ray: a certain hit of an opaque one does without further ado.
     #[inline(always)]
-    fn take(&mut self, first: u32, candidates: &Candidates) -> bool {
+    fn take(&mut self, simd: S, first: u32, candidates: &Candidates) -> bool {
         let Candidates { mut maybe, certain, .. } = *candidates;
         while maybe != 0 {
             let lane = maybe.trailing_zeros() & 7;
@@ -115,7 +115,7 @@ where
             let place = first + lane;
             let number = self.test.accel.numbers[place as usize];
             if certain & 1 << lane != 0 && place != self.left && (self.test.opaque)(number)
-                || self.test.test(place as usize)
+                || self.test.test(simd, place as usize)
             {
                 return true;
             }
@@ -140,14 +140,14 @@ where
             Content::Spheres(k) => {
                 let block = &self.tree.spheres[k];
                 let candidates = block.sort_out(simd, &self.leaf_ray, self.limit);
-                self.take(block.first, &candidates)
+                self.take(simd, block.first, &candidates)
             }
             Content::Triangles(k) => {
                 let block = &self.tree.triangles[k];
                 let candidates = block.sort_out(simd, &self.leaf_ray, self.limit);
-                self.take(block.first, &candidates)
+                self.take(simd, block.first, &candidates)
             }
-            Content::One(place) => self.test.test(place),
+            Content::One(place) => self.test.test(simd, place),
             Content::Node(_) => false,
         };
         self.stopped

@@ -30,8 +30,26 @@ use build::Division;
 use crossed::Crossed;
 use query::Nearest;
 pub use simd::Isa;
-use simd::dispatch;
+use simd::{Kernel, Simd, dispatch};
 use tree::Tree;
+
+/// What [`Accel::run`] runs.
+pub(crate) trait Work {
+    /// Must be `#[inline(always)]`, and so must what it calls; else that is compiled for the baseline.
+    fn run(self);
+}
+
+/// Work as a kernel that needs no lanes.
+struct Run<W>(W);
+
+impl<W: Work> Kernel for Run<W> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) {
+        self.0.run();
+    }
+}
 
 /// The primitives of a scene, arranged so that a ray finds those it meets without trying all.
 #[derive(Debug)]
@@ -110,6 +128,12 @@ impl Accel {
         self.isa
     }
 
+    /// Runs `work` compiled for the instructions that queries use, so that its fused multiply-adds are instructions too.
+    #[inline(always)]
+    pub(crate) fn run<W: Work>(&self, work: W) {
+        dispatch(self.isa, Run(work));
+    }
+
     /// The nearest hit with `0 < t < end`; of equal ones, that of the lowest primitive.
     pub fn nearest(&self, ray: &Ray, end: f64) -> Option<Hit> {
         dispatch(self.isa, Nearest { accel: self, ray, end })
@@ -122,16 +146,20 @@ impl Accel {
         }
     }
 
-    /// Calls `visit(index, primitive, crossing)` for every crossing of each of up to 64 rays before its end at `t = 1`, which is
-    /// `target` for all of them, in no order; a ray whose visit breaks is done.
-    pub fn any_crossing_packet(
+    /// As [`Accel::is_blocked`] for up to 64 rays that all end at `t = 1` in `target`; `blocked` gets the answers, and
+    /// `visit(index, primitive, crossing)` is told the ray too.
+    pub fn is_blocked_packet(
         &self,
         rays: &[Ray],
         _target: DVec3,
+        opaque: impl Fn(u32) -> bool,
         mut visit: impl FnMut(u32, u32, Crossing) -> ControlFlow<()>,
+        blocked: &mut [bool],
     ) {
-        for (ray, index) in rays.iter().zip(0..) {
-            self.any_crossing(ray, 1.0, |primitive, crossing| visit(index, primitive, crossing));
+        for ((ray, blocked), index) in rays.iter().zip(blocked).zip(0..) {
+            *blocked = self.is_blocked(ray, 1.0, &opaque, |primitive, crossing| {
+                visit(index, primitive, crossing)
+            });
         }
     }
 

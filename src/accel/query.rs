@@ -39,9 +39,9 @@ impl Best {
 
     /// Offers the crossings of the primitive in `place`.
     #[inline(always)]
-    pub(super) fn test(&mut self, accel: &Accel, ray: &Ray, place: usize) {
+    pub(super) fn test<S: Simd>(&mut self, simd: S, accel: &Accel, ray: &Ray, place: usize) {
         let number = accel.numbers[place];
-        let [first, second] = accel.shapes[place].crossings_of(ray, number);
+        let [first, second] = simd.crossings(&accel.shapes[place], ray, number);
         self.offer(first, number);
         self.offer(second, number);
     }
@@ -68,7 +68,7 @@ impl Kernel for Nearest<'_> {
         let Self { accel, ray, end } = self;
         let mut best = Best::before(end);
         for place in accel.outside() {
-            best.test(accel, ray, place);
+            best.test(simd, accel, ray, place);
         }
         if let Some(tree) = &accel.tree {
             match tree.frame.enter(ray) {
@@ -76,12 +76,12 @@ impl Kernel for Nearest<'_> {
                 Entry::Ray(tree_ray) => {
                     let mut search = Search::new(simd, accel, tree, ray, tree_ray, best);
                     walk::<S, true>(simd, &tree.nodes, tree.root, &tree_ray, &mut search);
-                    best = search.finish();
+                    best = search.finish(simd);
                 }
                 Entry::Extreme => {
                     let origin = tree.frame.point(ray.origin);
                     extreme::walk(&tree.nodes, tree.root, ray, origin, |leaf| {
-                        tree.places(leaf).for_each(|place| best.test(accel, ray, place));
+                        tree.places(leaf).for_each(|place| best.test(simd, accel, ray, place));
                         false
                     });
                 }
@@ -136,8 +136,8 @@ impl<'a, S: Simd> Search<'a, S> {
 
     /// Decides the primitive in `place`.
     #[inline(always)]
-    fn test(&mut self, place: u32) {
-        self.best.test(self.accel, self.ray, place as usize);
+    fn test(&mut self, simd: S, place: u32) {
+        self.best.test(simd, self.accel, self.ray, place as usize);
         self.limit = self.limit.min(self.tree_ray.end_above(self.best.t));
     }
 
@@ -145,14 +145,14 @@ impl<'a, S: Simd> Search<'a, S> {
     ///
     /// A pending hit loses to one that ends before it starts; where intervals overlap, both are decided.
     #[inline(always)]
-    fn take(&mut self, first: u32, candidates: &Candidates) {
+    fn take(&mut self, simd: S, first: u32, candidates: &Candidates) {
         let Candidates { mut maybe, certain, from, to } = *candidates;
         while maybe != 0 {
             let lane = maybe.trailing_zeros() & 7;
             maybe &= maybe - 1;
             let place = first + lane;
             if certain & 1 << lane == 0 || place == self.left {
-                self.test(place);
+                self.test(simd, place);
                 continue;
             }
             let (from, to) = (from.0[lane as usize], to.0[lane as usize]);
@@ -160,7 +160,7 @@ impl<'a, S: Simd> Search<'a, S> {
                 continue;
             }
             if to >= self.pending.from && self.pending.place != u32::MAX {
-                self.test(self.pending.place);
+                self.test(simd, self.pending.place);
             }
             self.pending = Pending { place, from };
             self.limit = self.limit.min(to);
@@ -168,9 +168,9 @@ impl<'a, S: Simd> Search<'a, S> {
     }
 
     #[inline(always)]
-    fn finish(mut self) -> Best {
+    fn finish(mut self, simd: S) -> Best {
         if self.pending.place != u32::MAX && self.pending.from <= self.limit {
-            self.test(self.pending.place);
+            self.test(simd, self.pending.place);
         }
         self.best
     }
@@ -188,14 +188,14 @@ impl<S: Simd> Visitor<S> for Search<'_, S> {
             Content::Spheres(k) => {
                 let block = &self.tree.spheres[k];
                 let candidates = block.sort_out(simd, &self.leaf_ray, self.limit);
-                self.take(block.first, &candidates);
+                self.take(simd, block.first, &candidates);
             }
             Content::Triangles(k) => {
                 let block = &self.tree.triangles[k];
                 let candidates = block.sort_out(simd, &self.leaf_ray, self.limit);
-                self.take(block.first, &candidates);
+                self.take(simd, block.first, &candidates);
             }
-            Content::One(place) => self.test(place as u32),
+            Content::One(place) => self.test(simd, place as u32),
             Content::Node(_) => {}
         }
         false

@@ -4,6 +4,8 @@
 //! `#[inline(always)]`, or the compiler builds them for the baseline and every operation becomes a call; then
 //! `f64::mul_add` in the shapes' own tests is an instruction too, with the same result as the library's function.
 
+use crate::geometry::{Ray, Shape, hit::Crossings};
+
 /// Which instructions the queries use; the answers do not depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
@@ -69,6 +71,9 @@ pub(super) trait Simd: Copy {
     /// Runs a kernel compiled for these instructions.
     fn vectorize<K: Kernel>(self, kernel: K) -> K::Output;
 
+    /// [`Shape::crossings_of`], compiled once for these instructions rather than into every kernel.
+    fn crossings(self, shape: &Shape, ray: &Ray, primitive: u32) -> Crossings;
+
     fn splat(self, x: f32) -> Self::F;
     fn load(self, x: &[f32; 8]) -> Self::F;
     fn store(self, x: Self::F) -> Lanes;
@@ -110,6 +115,15 @@ impl Simd for Portable {
     #[inline(always)]
     fn vectorize<K: Kernel>(self, kernel: K) -> K::Output {
         kernel.run(self)
+    }
+
+    #[inline(always)]
+    fn crossings(self, shape: &Shape, ray: &Ray, primitive: u32) -> Crossings {
+        #[inline(never)]
+        fn compiled(shape: &Shape, ray: &Ray, primitive: u32) -> Crossings {
+            shape.crossings_of(ray, primitive)
+        }
+        compiled(shape, ray, primitive)
     }
 
     #[inline(always)]

@@ -8,6 +8,8 @@ use std::arch::x86_64::{
     _mm256_storeu_ps, _mm256_sub_ps, _mm256_xor_ps,
 };
 
+use crate::geometry::{Ray, Shape, hit::Crossings};
+
 use super::simd::{Kernel, Lanes, Simd};
 
 /// AVX2 and FMA. Only [`Avx2::detect`] makes one, so that a value proves the machine has both; this is what every
@@ -45,6 +47,17 @@ impl Simd for Avx2 {
         }
         // SAFETY: `self` proves that the machine has AVX2 and FMA.
         unsafe { compiled(self, kernel) }
+    }
+
+    #[inline(always)]
+    fn crossings(self, shape: &Shape, ray: &Ray, primitive: u32) -> Crossings {
+        #[target_feature(enable = "avx2,fma")]
+        #[inline(never)]
+        fn compiled(shape: &Shape, ray: &Ray, primitive: u32) -> Crossings {
+            shape.crossings_of(ray, primitive)
+        }
+        // SAFETY: `self` proves that the machine has AVX2 and FMA.
+        unsafe { compiled(shape, ray, primitive) }
     }
 
     #[inline(always)]

@@ -33,22 +33,19 @@ struct Slabs<S: Simd> {
     inverse: [S::F; 3],
     /// The origin times that.
     offset: [S::F; 3],
-    /// Which rows of a node's planes are met first, and which last.
-    near: [usize; 3],
-    far: [usize; 3],
+    /// Whether the ray meets the larger coordinate first; as truth values, so that rows found by them are known to exist.
+    backward: [bool; 3],
 }
 
 impl<S: Simd> Slabs<S> {
     #[inline(always)]
     fn new(simd: S, ray: &TreeRay) -> Self {
         let inverse = ray.inverse();
-        let row = |axis: usize| if inverse[axis].is_sign_negative() { axis + 3 } else { axis };
-        let near = [row(0), row(1), row(2)];
-        let far = [3 - near[0], 5 - near[1], 7 - near[2]];
         let [o, i] = [ray.origin, inverse];
+        let backward = i.map(f32::is_sign_negative);
         let offset = [simd.splat(o[0] * i[0]), simd.splat(o[1] * i[1]), simd.splat(o[2] * i[2])];
         let inverse = [simd.splat(i[0]), simd.splat(i[1]), simd.splat(i[2])];
-        Self { inverse, offset, near, far }
+        Self { inverse, offset, backward }
     }
 
     /// Which children of `node` the ray may meet before `limit`, and where it enters each.
@@ -58,12 +55,13 @@ impl<S: Simd> Slabs<S> {
     #[inline(always)]
     fn test(&self, simd: S, node: &Node, limit: f32) -> (u32, S::F) {
         let (planes, i, o) = (&node.planes, &self.inverse, &self.offset);
-        let enter_x = simd.mul_sub(simd.load(&planes[self.near[0]]), i[0], o[0]);
-        let enter_y = simd.mul_sub(simd.load(&planes[self.near[1]]), i[1], o[1]);
-        let enter_z = simd.mul_sub(simd.load(&planes[self.near[2]]), i[2], o[2]);
-        let leave_x = simd.mul_sub(simd.load(&planes[self.far[0]]), i[0], o[0]);
-        let leave_y = simd.mul_sub(simd.load(&planes[self.far[1]]), i[1], o[1]);
-        let leave_z = simd.mul_sub(simd.load(&planes[self.far[2]]), i[2], o[2]);
+        let [x, y, z] = self.backward.map(|b| if b { 3 } else { 0 });
+        let enter_x = simd.mul_sub(simd.load(&planes[x]), i[0], o[0]);
+        let enter_y = simd.mul_sub(simd.load(&planes[1 + y]), i[1], o[1]);
+        let enter_z = simd.mul_sub(simd.load(&planes[2 + z]), i[2], o[2]);
+        let leave_x = simd.mul_sub(simd.load(&planes[3 - x]), i[0], o[0]);
+        let leave_y = simd.mul_sub(simd.load(&planes[4 - y]), i[1], o[1]);
+        let leave_z = simd.mul_sub(simd.load(&planes[5 - z]), i[2], o[2]);
         let enter = simd.max(simd.max(enter_x, enter_y), simd.max(enter_z, simd.splat(0.0)));
         let leave = simd.min(simd.min(leave_x, leave_y), simd.min(leave_z, simd.splat(limit)));
         (simd.le(enter, leave), enter)
@@ -149,8 +147,18 @@ pub(super) fn walk<S: Simd, const SORTED: bool>(
                     continue;
                 }
                 let enter = simd.store(enter).0;
+                let second = (met.trailing_zeros() & 7) as usize;
+                met &= met - 1;
+                let a = key(enter[first], node.children[first]);
+                let b = key(enter[second], node.children[second]);
+                if met == 0 {
+                    stack.push(a.max(b));
+                    child = Child::from_word(a.min(b) as u32);
+                    continue;
+                }
                 let base = stack.len;
-                stack.push(key(enter[first], node.children[first]));
+                stack.push(a.max(b));
+                stack.push(a.min(b));
                 while met != 0 {
                     let next = (met.trailing_zeros() & 7) as usize;
                     met &= met - 1;

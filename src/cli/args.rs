@@ -6,10 +6,14 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand, ValueEnum};
 use glam::DVec3;
 use whitted::aa::AntiAliasing;
+use whitted::film::Tile;
 use whitted::scene::ModelPlace;
 use whitted::scene::generators::MOST_OBJECTS;
 
 use super::memory;
+
+/// The longest time limit: about eleven days.
+const MOST_SECONDS: f64 = 1e6;
 
 /// The most threads one may ask for: more than machines have, fewer than they refuse to start.
 const MOST_THREADS: usize = 4096;
@@ -28,13 +32,24 @@ pub(crate) enum Command {
     Render(Box<RenderArgs>),
     /// Show what a scene or model holds, what was repaired, what is missing
     Inspect(InspectArgs),
-    /// List the built-in scenes
-    Scenes,
+    /// List the built-in scenes, or show one
+    Scenes(ScenesArgs),
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct ScenesArgs {
+    /// Print this scene as TOML, to be changed and rendered
+    #[arg(long, value_name = "NAME", conflicts_with = "schema")]
+    pub(crate) show: Option<String>,
+
+    /// Print the JSON schema of the scene format, for editors
+    #[arg(long)]
+    pub(crate) schema: bool,
 }
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct InspectArgs {
-    /// Model to look at: .obj
+    /// File to look at: .obj, .nff or .toml, or a built-in scene
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
 
@@ -49,8 +64,8 @@ pub(crate) struct InspectArgs {
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct RenderArgs {
-    /// Built-in scene, of which `whitted scenes` shows a list, or a file: .obj (a model, on a floor
-    /// under two lights)
+    /// Built-in scene, of which `whitted scenes` shows a list, or a file: .toml, .nff, or .obj
+    /// (a model, on a floor under two lights)
     #[arg(default_value = "assignment")]
     pub(crate) scene: String,
 
@@ -64,9 +79,32 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub(crate) size: Option<[u32; 2]>,
 
-    /// Anti-aliasing: none (one ray per pixel), grid:N (N x N rays per pixel)
-    #[arg(long, value_name = "MODE", default_value_t)]
-    pub(crate) aa: AntiAliasing,
+    /// Anti-aliasing: none (one ray per pixel), grid:N (N x N rays per pixel), or adaptive[:ERROR[,MAX]] (rays where the
+    /// picture needs them, until a pixel's estimated error is below ERROR levels of 255 or it has MAX rays; 4 and 64 by
+    /// default) [default: adaptive]
+    #[arg(long, value_name = "MODE")]
+    pub(crate) aa: Option<AntiAliasing>,
+
+    /// Estimated root-mean-square error of the picture, in levels of 255, to get below; rays go where they reduce it most.
+    /// With --crop that of the part, so the part then equals the whole picture only if both end at the same squared error
+    /// per ray, which is reported; adaptive:ERROR has no such catch
+    #[arg(long, value_name = "E", value_parser = parse_error, allow_negative_numbers = true)]
+    pub(crate) max_error: Option<f64>,
+
+    /// Seconds from the start of the program to the written picture; the best picture that they allow, whose error is
+    /// reported. It is not the same every time
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, conflicts_with = "max_error",
+        allow_negative_numbers = true)]
+    pub(crate) time_limit: Option<f64>,
+
+    /// Part of the picture to render, in pixels from the upper left, half open, such as 100,50,200,80; the same pixels as in
+    /// the whole picture
+    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = parse_crop, allow_hyphen_values = true)]
+    pub(crate) crop: Option<Tile>,
+
+    /// PNG of the same size to measure the error against
+    #[arg(long, value_name = "FILE")]
+    pub(crate) reference: Option<PathBuf>,
 
     /// Deepest level of recursion, camera rays being level 1 [default: the scene's own]
     #[arg(long, value_name = "N", value_parser = parse_depth, allow_negative_numbers = true)]
@@ -171,6 +209,34 @@ fn parse_size(text: &str) -> Result<[u32; 2], String> {
         ));
     }
     Ok([width, height])
+}
+
+fn parse_error(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(error) if error >= 0.0 && error <= 255.0 => Ok(error),
+        _ => Err("give a number of levels from 0 to 255".to_owned()),
+    }
+}
+
+fn parse_seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) if seconds > 0.0 && seconds <= MOST_SECONDS => Ok(seconds),
+        _ => Err(format!("give a number of seconds, above 0 and at most {MOST_SECONDS}")),
+    }
+}
+
+fn parse_crop(text: &str) -> Result<Tile, String> {
+    let numbers: Vec<u32> = text.split(',').filter_map(|number| number.parse().ok()).collect();
+    match *numbers {
+        [x0, y0, x1, y1] if text.split(',').count() == 4 => {
+            if x0 < x1 && y0 < y1 {
+                Ok(Tile { x0, y0, x1, y1 })
+            } else {
+                Err("the part is empty; X1 and Y1 are the first pixels outside".to_owned())
+            }
+        }
+        _ => Err("give four whole numbers, such as 100,50,200,80".to_owned()),
+    }
 }
 
 fn parse_depth(text: &str) -> Result<u32, String> {

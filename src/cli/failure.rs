@@ -115,6 +115,10 @@ impl fmt::Display for Failure {
                 text = format!("{text}: {cause}");
             }
         }
+        // Faults of a scene file show its lines; they come with their control characters replaced.
+        if let Some(SceneError::Invalid(_)) = self.error.downcast_ref::<SceneError>() {
+            return f.write_str(&text);
+        }
         f.write_str(&escaped(&text))
     }
 }

@@ -3,18 +3,70 @@
 use std::fmt::Write;
 
 use serde::Serialize;
-use whitted::scene::Warning;
 use whitted::scene::obj::{ModelReport, inspect_model};
+use whitted::scene::{LoadOptions, Loaded, Warning};
 
 use super::args::InspectArgs;
 use super::failure::{Failure, warn};
 use super::streams;
 
 pub(crate) fn run(args: &InspectArgs) -> Result<(), Failure> {
+    let is_model =
+        args.file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj"));
+    if !is_model {
+        return scene(args);
+    }
     let report = inspect_model(&args.file)?;
     let text = if args.json { json(&report)? } else { text(&report)? };
     streams::write_stdout(text.as_bytes())?;
     warn(&report.warnings, args.strict, true)
+}
+
+/// A scene: what it is made of.
+fn scene(args: &InspectArgs) -> Result<(), Failure> {
+    let name = args.file.to_string_lossy();
+    let Loaded { scene, warnings } = whitted::scene::load(&name, &LoadOptions::default())?;
+    let [width, height] = scene.resolution();
+    let text = if args.json {
+        let json = JsonScene {
+            scene: scene.name(),
+            resolution: [width, height],
+            depth: scene.depth(),
+            primitives: scene.primitive_count(),
+            lights: scene.light_count(),
+            warnings: json_warnings(&warnings),
+        };
+        serde_json::to_string_pretty(&json)? + "\n"
+    } else {
+        let mut out = String::new();
+        writeln!(out, "{}", scene.name())?;
+        writeln!(out, "picture      {width}x{height} pixels, depth {}", scene.depth())?;
+        writeln!(out, "primitives   {}", scene.primitive_count())?;
+        writeln!(out, "lights       {}", scene.light_count())?;
+        for warning in &warnings {
+            writeln!(out, "warning      {warning}")?;
+        }
+        out
+    };
+    streams::write_stdout(text.as_bytes())?;
+    warn(&warnings, args.strict, true)
+}
+
+fn json_warnings(warnings: &[Warning]) -> Vec<JsonWarning<'_>> {
+    warnings
+        .iter()
+        .map(|Warning { file, line, message }| JsonWarning { file, line: *line, message })
+        .collect()
+}
+
+#[derive(Serialize)]
+struct JsonScene<'a> {
+    scene: &'a str,
+    resolution: [u32; 2],
+    depth: u32,
+    primitives: usize,
+    lights: usize,
+    warnings: Vec<JsonWarning<'a>>,
 }
 
 #[derive(Serialize)]
@@ -96,11 +148,7 @@ fn json(report: &ModelReport) -> serde_json::Result<String> {
             .iter()
             .map(|t| JsonTexture { name: &t.name, material: &t.material, found: t.found })
             .collect(),
-        warnings: report
-            .warnings
-            .iter()
-            .map(|Warning { file, line, message }| JsonWarning { file, line: *line, message })
-            .collect(),
+        warnings: json_warnings(&report.warnings),
     };
     serde_json::to_string_pretty(&json).map(|text| text + "\n")
 }

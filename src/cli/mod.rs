@@ -25,7 +25,7 @@ pub(crate) fn run() -> ExitCode {
         Ok(args) => match &args.command {
             Command::Render(args) => render::run(args, started),
             Command::Inspect(args) => inspect::run(args),
-            Command::Scenes => scenes::run(),
+            Command::Scenes(args) => scenes::run(args),
         },
         Err(error) if error.use_stderr() => Err(Failure::from_clap(&error)),
         Err(help_or_version) => streams::write_stdout(help_or_version.to_string().as_bytes()),

@@ -2,12 +2,15 @@
 
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use anyhow::{Context, anyhow};
+use image::RgbImage;
+use whitted::aa::AntiAliasing;
 use whitted::classic::{CLASSIC_SIZE, render_classic};
-use whitted::film::{FileError, Film, OutputFile, WholeFile, encode};
-use whitted::render::{RayCounts, RenderOptions, Rendering};
+use whitted::film::metrics::read_png_rgb8;
+use whitted::film::{Difference, FileError, Film, OutputFile, WholeFile, encode};
+use whitted::render::{Goal, RayCounts, RenderOptions, Rendering};
 use whitted::scene::{LoadOptions, Loaded, Scene};
 
 use super::args::{ProgressMode, RenderArgs, Rules};
@@ -16,15 +19,20 @@ use super::progress::Reporter;
 use super::stats::{Seconds, Statistics};
 use super::{memory, streams};
 
+/// What writing takes, and what passed before the clock was looked at, at most: kept free at the end of a time limit.
+const WRITE_SECONDS: f64 = 0.012;
+const WRITE_SECONDS_PER_PIXEL: f64 = 4e-8;
+
+/// The most rays per pixel of a render towards a goal, unless the mode says so.
+const MOST_RAYS_FOR_GOAL: u32 = 1024;
+
 /// Renders as `args` say; `started` is when the program did.
 pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
-    let is_classic = args.rules == Rules::Classic;
-    if is_classic && (args.size.is_some() || args.depth.is_some()) {
-        return Err(Failure::usage(anyhow!(
-            "--rules classic: size and depth are part of the rules; leave out --size and --depth"
-        )));
+    if args.rules == Rules::Classic {
+        check_classic(args)?;
     }
     let loading = Instant::now();
+    let is_classic = args.rules == Rules::Classic;
     let load_options = LoadOptions {
         models: args.models.clone(),
         eye: args.eye,
@@ -34,8 +42,8 @@ pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
         objects: args.objects,
         rows: is_classic.then_some(CLASSIC_SIZE),
     };
-    let Loaded { scene, warnings } = whitted::scene::load(&args.scene, &load_options)?;
-    warn(&warnings, args.strict, args.quiet)?;
+    let Loaded { scene, warnings: odd } = whitted::scene::load(&args.scene, &load_options)?;
+    warn(&odd, args.strict, args.quiet)?;
     let build = scene.bvh_stats().build_seconds;
     let load = (loading.elapsed().as_secs_f64() - build).max(0.0);
 
@@ -44,8 +52,9 @@ pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
     check_apart(&picture, stats.as_ref())?;
     check_memory(args.size.unwrap_or(scene.resolution()))?;
 
-    let options =
-        RenderOptions { size: args.size, aa: args.aa, depth: args.depth, threads: args.threads };
+    let reference = args.reference.as_deref().map(read_png_rgb8).transpose()?;
+    let options = options(args, &scene, started)?;
+    check_reference(&options, &scene, reference.as_ref())?;
     let rendering = {
         let mode = if args.quiet { ProgressMode::None } else { args.progress };
         let reporter = Reporter::new(mode);
@@ -56,6 +65,7 @@ pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
         }
     };
 
+    let measured = reference.map(|reference| measure(&rendering.film, &reference)).transpose()?;
     let name = picture.name();
     let writing = Instant::now();
     picture.write(&rendering.film)?;
@@ -63,11 +73,16 @@ pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
     let total = started.elapsed().as_secs_f64();
     let seconds = Seconds { load, build, render: rendering.seconds, write, total };
     if let Some(target) = stats {
-        target.write(&Statistics::new(&scene, args.aa, &rendering, seconds).to_json()?)?;
+        target.write(
+            &Statistics::new(&scene, options.aa, &rendering, measured, seconds).to_json()?,
+        )?;
     }
     // Under `json`, standard error is for programs, and they have the statistics.
     if !args.quiet && args.progress != ProgressMode::Json {
-        streams::note(&summary(&name, args, &rendering, total));
+        for warning in warnings(&rendering, args) {
+            streams::note(&format!("warning: {warning}"));
+        }
+        streams::note(&summary(&name, options.aa, &rendering, measured, total));
         if is_classic {
             let RayCounts { camera_hit, reflected, refracted, shadow, .. } = rendering.rays;
             streams::note(&format!(
@@ -77,6 +92,125 @@ pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
         }
     }
     Ok(())
+}
+
+/// The classical rules leave no choice in these.
+fn check_classic(args: &RenderArgs) -> Result<(), Failure> {
+    let chosen = [
+        ("--size", args.size.is_some()),
+        ("--aa", args.aa.is_some()),
+        ("--depth", args.depth.is_some()),
+        ("--crop", args.crop.is_some()),
+        ("--max-error", args.max_error.is_some()),
+        ("--time-limit", args.time_limit.is_some()),
+    ];
+    match chosen.iter().find(|(_, is_given)| *is_given) {
+        None => Ok(()),
+        Some((flag, _)) => Err(Failure::usage(anyhow!(
+            "--rules classic has its own size, rays and depth; leave out {flag}"
+        ))),
+    }
+}
+
+/// What the flags ask for.
+fn options(args: &RenderArgs, scene: &Scene, started: Instant) -> Result<RenderOptions, Failure> {
+    let goal = match (args.max_error, args.time_limit) {
+        (Some(error), _) => Goal::Error(error),
+        (None, Some(seconds)) => {
+            let writing = WRITE_SECONDS + WRITE_SECONDS_PER_PIXEL * pixels(args, scene);
+            Goal::Until(started + Duration::from_secs_f64((seconds - writing).max(0.0)))
+        }
+        (None, None) => Goal::Mode,
+    };
+    let aa = match (args.aa, goal) {
+        (None, Goal::Mode) => scene.aa().unwrap_or_default(),
+        (None, _) => AntiAliasing::Adaptive { error: 0.0, most: MOST_RAYS_FOR_GOAL },
+        (Some(aa @ AntiAliasing::Adaptive { .. }), _) | (Some(aa), Goal::Mode) => aa,
+        (Some(aa), _) => {
+            let flag = if args.max_error.is_some() { "--max-error" } else { "--time-limit" };
+            return Err(Failure::usage(anyhow!(
+                "{flag} chooses the rays of each pixel itself, but --aa {aa} fixes them; leave --aa out or use \
+                 adaptive"
+            )));
+        }
+    };
+    if let Some(crop) = args.crop {
+        let [width, height] = args.size.unwrap_or(scene.resolution());
+        if crop.x1 > width || crop.y1 > height {
+            return Err(Failure::usage(anyhow!(
+                "--crop {},{},{},{} is not inside of the picture, {width}x{height} pixels",
+                crop.x0,
+                crop.y0,
+                crop.x1,
+                crop.y1
+            )));
+        }
+    }
+    Ok(RenderOptions {
+        size: args.size,
+        aa,
+        depth: args.depth,
+        threads: args.threads,
+        crop: args.crop,
+        goal,
+    })
+}
+
+fn pixels(args: &RenderArgs, scene: &Scene) -> f64 {
+    let [width, height] = match args.crop {
+        Some(crop) => [crop.width(), crop.height()],
+        None => args.size.unwrap_or(scene.resolution()),
+    };
+    f64::from(width) * f64::from(height)
+}
+
+/// A reference of another size is better refused before the render than after it.
+fn check_reference(
+    options: &RenderOptions,
+    scene: &Scene,
+    reference: Option<&RgbImage>,
+) -> Result<(), Failure> {
+    let Some(reference) = reference else { return Ok(()) };
+    let [width, height] = match options.crop {
+        Some(crop) => [crop.width(), crop.height()],
+        None => options.size.unwrap_or(scene.resolution()),
+    };
+    if reference.dimensions() == (width, height) {
+        return Ok(());
+    }
+    Err(Failure::usage(anyhow!(
+        "--reference: the picture to render has {width}x{height} pixels, the reference {}x{}; choose one of the \
+         same size",
+        reference.width(),
+        reference.height()
+    )))
+}
+
+/// The error against the reference, as the picture file will have it.
+fn measure(film: &Film, reference: &RgbImage) -> Result<f64, Failure> {
+    let levels = RgbImage::from_raw(film.width(), film.height(), encode::to_srgb8(film));
+    let levels = levels.context("a film has three bytes a pixel")?;
+    Ok(Difference::between(&levels, reference)?.rmse)
+}
+
+/// What was aimed at but not reached.
+fn warnings(rendering: &Rendering, args: &RenderArgs) -> Vec<String> {
+    let outcome = &rendering.outcome;
+    let mut warnings = Vec::new();
+    if let Some(wanted) = outcome.missed_error {
+        warnings.push(format!(
+            "--max-error {wanted} is not reached: the estimated error is {:.3} levels with the most rays a pixel may \
+             get; allow more, such as --aa adaptive:0,4096",
+            rendering.estimated_rmse
+        ));
+    }
+    if let (Some(late), Some(limit)) = (outcome.late, args.time_limit) {
+        warnings.push(format!(
+            "--time-limit {limit} is too short for one ray in each pixel, which took {:.3} s; nothing was refined",
+            late.as_secs_f64()
+        ));
+    }
+    warnings
 }
 
 /// Where the picture goes.
@@ -183,17 +317,35 @@ fn check_memory([width, height]: [u32; 2]) -> Result<(), Failure> {
 }
 
 /// What was done and what it took, in two lines.
-fn summary(name: &str, args: &RenderArgs, rendering: &Rendering, total: f64) -> String {
+fn summary(
+    name: &str,
+    aa: AntiAliasing,
+    rendering: &Rendering,
+    measured: Option<f64>,
+    total: f64,
+) -> String {
+    let mode = match (rendering.outcome.cut, rendering.outcome.per_ray) {
+        (true, _) => "adaptive until the time was up".to_owned(),
+        (_, Some(per_ray)) => format!("adaptive to {per_ray:.4} squared levels per ray"),
+        _ => aa.to_string(),
+    };
+    let mut error = format!("off by about {:.2} of 255 levels", rendering.estimated_rmse);
+    if let Some(measured) = measured {
+        error = format!("{error}, {measured:.2} measured");
+    }
+    let unsettled = match rendering.outcome.unsettled {
+        0 => String::new(),
+        pixels => format!(" ({pixels} pixels above their limit with all rays)"),
+    };
     let Rendering { film, rays, threads, depth, seconds, .. } = rendering;
     let all = rays.camera + rays.reflected + rays.refracted + rays.transmitted + rays.shadow;
     let plural = if *threads == 1 { "" } else { "s" };
     format!(
-        "wrote {name}: {}x{} pixels, {}, depth {depth}, {total:.2} s\n\
+        "wrote {name}: {}x{} pixels, {mode}, depth {depth}, {error}{unsettled}, {total:.2} s\n\
          {all} rays in {seconds:.2} s on {threads} thread{plural}: {} camera, {} reflected, {} refracted, \
          {} transmitted, {} shadow",
         film.width(),
         film.height(),
-        args.aa,
         rays.camera,
         rays.reflected,
         rays.refracted,

@@ -66,6 +66,8 @@ struct Samples {
 struct Error {
     estimated_rmse: Option<f64>,
     measured_rmse: Option<f64>,
+    /// The squared error for each ray at which pixels stopped, if the goal was an error.
+    squared_per_ray: Option<f32>,
 }
 
 impl<'a> Statistics<'a> {
@@ -73,6 +75,7 @@ impl<'a> Statistics<'a> {
         scene: &'a Scene,
         aa: AntiAliasing,
         rendering: &Rendering,
+        measured_rmse: Option<f64>,
         seconds: Seconds,
     ) -> Self {
         let RayCounts { camera, reflected, refracted, transmitted, shadow, camera_hit } =
@@ -91,7 +94,11 @@ impl<'a> Statistics<'a> {
             rays: Rays { camera, reflected, refracted, transmitted, shadow, camera_hit },
             bvh: Bvh { nodes: bvh.nodes, bytes: bvh.bytes },
             samples_per_pixel: Samples::of(&rendering.film),
-            error: Error { estimated_rmse: None, measured_rmse: None },
+            error: Error {
+                estimated_rmse: Some(rendering.estimated_rmse),
+                measured_rmse,
+                squared_per_ray: rendering.outcome.per_ray,
+            },
             peak_memory_bytes: memory::peak(),
             version: env!("CARGO_PKG_VERSION"),
         }

@@ -41,6 +41,18 @@ impl Film {
         Self { width, height, pixels: vec![Rgb::ZERO; count], samples: vec![0; count] }
     }
 
+    /// A film of finished pixels and the rays that each took, row by row from the top left.
+    ///
+    /// # Panics
+    ///
+    /// If a list is not as long as the film has pixels.
+    pub fn from_parts(width: u32, height: u32, pixels: Vec<Rgb>, samples: Vec<u32>) -> Self {
+        let count = u64::from(width) * u64::from(height);
+        assert_eq!(pixels.len() as u64, count, "colours of a film {width} x {height}");
+        assert_eq!(samples.len() as u64, count, "samples of a film {width} x {height}");
+        Self { width, height, pixels, samples }
+    }
+
     /// Bytes a film of `width` x `height` pixels occupies; cannot overflow.
     pub fn memory_bytes(width: u32, height: u32) -> u128 {
         u128::from(width) * u128::from(height) * (size_of::<Rgb>() + size_of::<u32>()) as u128

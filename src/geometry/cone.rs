@@ -36,7 +36,7 @@ use super::{
     shape::ShapeError,
     solid::{Interval, leaving},
 };
-use crate::math::{Frame, Roots, compensated::hypot, difference_of_products, dot};
+use crate::math::{Frame, Roots, compensated::hypot, difference_of_products, dot, scale};
 
 /// The faces of a cone.
 const SIDE: u8 = 0;
@@ -260,14 +260,16 @@ impl Cone {
         }
     }
 
+    #[inline(always)]
     pub(crate) fn surface(&self, ray: &Ray, t: f64, face: u8, own: Option<&Departure>) -> Surface {
         let start =
             own.map_or_else(|| self.frame.to_local(ray.origin - self.apex), |from| from.local);
         let mut q = start + self.frame.to_local(ray.dir) * t;
         let normal = if face == SIDE {
             q = self.onto_side(q);
-            DVec3::new(self.height * q.x, self.radius * hypot(q.x, q.z), self.height * q.z)
-                .try_normalize()
+            let (q, size) = (scale::normalized(q).0, self.height.max(self.radius));
+            let (height, radius) = (self.height / size, self.radius / size);
+            scale::unit(DVec3::new(height * q.x, radius * hypot(q.x, q.z), height * q.z))
                 .unwrap_or(DVec3::Y)
         } else {
             q.y = -self.height;
@@ -280,14 +282,18 @@ impl Cone {
     }
 
     /// The point of the side nearest to `q`.
+    #[inline(always)]
     fn onto_side(&self, q: DVec3) -> DVec3 {
         let rho = hypot(q.x, q.z);
         if rho == 0.0 {
             return DVec3::ZERO; // the apex
         }
         // In the half-plane of q the generator goes along (R, −h); how far along it is the foot of the perpendicular?
-        let slant_squared = self.radius.mul_add(self.radius, self.height * self.height);
-        let along = ((self.radius * rho - self.height * q.y) / slant_squared).clamp(0.0, 1.0);
+        let size = self.height.max(self.radius);
+        let (height, radius) = (self.height / size, self.radius / size);
+        let slant_squared = radius.mul_add(radius, height * height);
+        let along = (radius * rho - height * q.y) / size / slant_squared;
+        let along = along.clamp(0.0, 1.0);
         let onto = self.radius * along / rho;
         DVec3::new(q.x * onto, -self.height * along, q.z * onto)
     }

@@ -19,7 +19,7 @@ use super::{
     shape::ShapeError,
     solid::{Interval, leaving},
 };
-use crate::math::{Frame, Roots, compensated::hypot, difference_of_products};
+use crate::math::{Frame, Roots, compensated::hypot, difference_of_products, scale};
 
 /// The faces of a cylinder.
 const SIDE: u8 = 0;
@@ -154,6 +154,7 @@ impl Cylinder {
         }
     }
 
+    #[inline(always)]
     pub(crate) fn surface(&self, ray: &Ray, t: f64, face: u8, own: Option<&Departure>) -> Surface {
         let start =
             own.map_or_else(|| self.frame.to_local(ray.origin - self.base), |from| from.local);
@@ -161,9 +162,10 @@ impl Cylinder {
         q.y = q.y.clamp(0.0, self.height);
         let normal = match face {
             SIDE => {
-                let onto = self.radius / hypot(q.x, q.z);
-                (q.x, q.z) = (q.x * onto, q.z * onto);
-                DVec3::new(q.x, 0.0, q.z) / self.radius
+                // On the axis only if the cylinder is of no width in the scene.
+                let out = scale::unit(DVec3::new(q.x, 0.0, q.z)).unwrap_or(DVec3::X);
+                (q.x, q.z) = (out.x * self.radius, out.z * self.radius);
+                out
             }
             BASE => {
                 q.y = 0.0;

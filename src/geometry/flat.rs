@@ -16,7 +16,7 @@ use super::{
     ray::Ray,
     shape::ShapeError,
 };
-use crate::math::{cross, difference_of_products, scale};
+use crate::math::{self, compensated::two_sum, cross, difference_of_products, scale};
 
 /// The shear that turns a direction into the third axis.
 struct Shear {
@@ -92,13 +92,27 @@ pub(super) fn crossing_of(
     if t.is_finite() { Crossing::at(t) } else { Crossing::NONE }
 }
 
-/// The surface of the plane through `vertex` square to the unit vector `normal`, where `ray` meets it at `t`.
+/// The surface of the plane through `vertex` square to the unit vector `normal`, where `ray` meets it at `t`; `rest` is what
+/// rounding took from the ray's origin.
 #[inline(always)]
-pub(super) fn surface(vertex: DVec3, normal: DVec3, ray: &Ray, t: f64) -> Surface {
-    let near = ray.at(t);
-    let point = near - normal * dot(normal, near - vertex);
-    let error = Surface::error_bound(normal, point.abs() + (point - vertex).abs());
-    Surface { local: point - vertex, ..Surface::plain(point, normal, error) }
+pub(super) fn surface(vertex: DVec3, normal: DVec3, ray: &Ray, t: f64, rest: DVec3) -> Surface {
+    let (near, near_rest) = sum(ray.origin, ray.dir * t + rest);
+    let (away, away_rest) = sum(near, -vertex);
+    let height = math::dot(normal, away) + dot(normal, away_rest + near_rest);
+    // Back into the plane along the ray, where the exact point is.
+    let back = ray.dir * (height / math::dot(normal, ray.dir));
+    let back = if back.is_finite() { back } else { normal * height };
+    let (point, point_rest) = sum(near, near_rest - back);
+    let local = point - vertex;
+    let error = Surface::error_bound(normal, point.abs() + local.abs());
+    Surface { point_rest, local, ..Surface::plain(point, normal, error) }
+}
+
+/// The rounded sum and its rounding error.
+#[inline(always)]
+fn sum(a: DVec3, b: DVec3) -> (DVec3, DVec3) {
+    let [x, y, z] = [two_sum(a.x, b.x), two_sum(a.y, b.y), two_sum(a.z, b.z)];
+    (DVec3::new(x.0, y.0, z.0), DVec3::new(x.1, y.1, z.1))
 }
 
 /// The dot product with a rounding less a term than the plain one.

@@ -53,6 +53,9 @@ pub struct Hit {
 pub struct Surface {
     /// The point, in the coordinates of the ray.
     pub point: DVec3,
+    /// What rounding took from `point`, where that is known (on flat shapes). A ray that bounces to and fro in small
+    /// steps would lose as much of each, and always to the same side.
+    pub point_rest: DVec3,
     /// The outward unit normal of the geometry there.
     pub normal: DVec3,
     /// The point in the primitive's own coordinates: about a sphere's centre, the middle of a cylinder's base, a cone's
@@ -76,7 +79,8 @@ impl Surface {
     #[inline(always)]
     pub(crate) fn plain(point: DVec3, normal: DVec3, error: f64) -> Self {
         let (local, uv) = (point, DVec2::ZERO);
-        Self { point, normal, local, error, uv, shading: normal, tint: Vec3::ONE }
+        let (shading, point_rest) = (normal, DVec3::ZERO);
+        Self { point, point_rest, normal, local, error, uv, shading, tint: Vec3::ONE }
     }
 
     /// A bound of the distance along `normal` between a surface and a computed point on it, which lies within
@@ -105,6 +109,7 @@ impl Surface {
             inward,
             local: self.local,
             point: self.point,
+            point_rest: self.point_rest,
         };
         Ray { origin, dir, from: Some(from) }
     }

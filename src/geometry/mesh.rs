@@ -246,11 +246,11 @@ impl Face {
         [flat::crossing_of(&corners, || doubled_area(&corners), ray), Crossing::NONE]
     }
 
-    pub(crate) fn surface(&self, ray: &Ray, t: f64) -> Surface {
+    pub(crate) fn surface(&self, ray: &Ray, t: f64, rest: DVec3) -> Surface {
         let corners = self.vertices();
         let normal = doubled_area(&corners);
         let normal = scale::normalized(normal).0.normalize();
-        let mut surface = flat::surface(corners[0], normal, ray, t);
+        let mut surface = flat::surface(corners[0], normal, ray, t, rest);
         let Attributes { normals, uvs, tints } = &self.mesh.attributes;
         if normals.is_empty() && uvs.is_empty() && tints.is_empty() {
             return surface;
@@ -350,7 +350,7 @@ mod tests {
         let tints = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
         let face = one_face(Attributes { uvs, tints, normals: Vec::new() });
         let ray = Ray::new(DVec3::new(0.25, 0.5, 3.0), DVec3::NEG_Z);
-        let surface = face.surface(&ray, face.crossings(&ray)[0].t);
+        let surface = face.surface(&ray, face.crossings(&ray)[0].t, DVec3::ZERO);
         assert!((surface.uv - DVec2::new(1.5, 4.0)).length() < 1e-15, "{}", surface.uv);
         assert!((surface.tint - Vec3::new(0.25, 0.5, 0.0)).length() < 1e-7, "{}", surface.tint);
         assert_eq!((surface.normal, surface.shading), (DVec3::Z, DVec3::Z));
@@ -370,7 +370,7 @@ mod tests {
         let mesh = Mesh::try_new(vertices, vec![[0, 1, 2]], attributes).expect("a mesh");
         let face = Arc::new(mesh).faces().next().expect("one face");
         let ray = Ray::new(DVec3::new(0.01, 0.02, 5.0), DVec3::NEG_Z);
-        let surface = face.surface(&ray, face.crossings(&ray)[0].t);
+        let surface = face.surface(&ray, face.crossings(&ray)[0].t, DVec3::ZERO);
         let lifted = surface.point + face.shadow_offset(&surface, false);
         let sagitta = 1.0 - surface.point.length();
         assert!(sagitta > 0.01 && lifted.length() >= 1.0 - 0.1 * sagitta, "{}", lifted.length());

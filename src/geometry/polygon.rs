@@ -80,7 +80,8 @@ impl Polygon {
         [flat::crossing(&self.vertices, self.normal, ray), Crossing::NONE]
     }
 
-    pub(crate) fn surface(&self, ray: &Ray, t: f64) -> Surface {
-        flat::surface(self.vertices[0], self.normal, ray, t)
+    #[inline(always)]
+    pub(crate) fn surface(&self, ray: &Ray, t: f64, rest: DVec3) -> Surface {
+        flat::surface(self.vertices[0], self.normal, ray, t, rest)
     }
 }

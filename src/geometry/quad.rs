@@ -50,13 +50,15 @@ impl Quad {
         [flat::crossing(&self.vertices, self.normal, ray), Crossing::NONE]
     }
 
-    pub(crate) fn surface(&self, ray: &Ray, t: f64) -> Surface {
-        let mut surface = flat::surface(self.vertices[0], self.normal, ray, t);
+    #[inline(always)]
+    pub(crate) fn surface(&self, ray: &Ray, t: f64, rest: DVec3) -> Surface {
+        let mut surface = flat::surface(self.vertices[0], self.normal, ray, t, rest);
         surface.uv = self.uv(surface.point);
         surface
     }
 
     /// The surface coordinates of a point of the plane, by Cramer's rule.
+    #[inline(always)]
     fn uv(&self, point: DVec3) -> DVec2 {
         let [corner, next, _, last] = self.vertices;
         let (edge1, edge2, s) = (next - corner, last - corner, point - corner);

@@ -29,6 +29,8 @@ pub struct Departure {
     /// The point left. The ray's origin is beside it, to find out what is met; where that is, is then computed from
     /// here, so that the steps aside of many bounces do not add up.
     pub point: DVec3,
+    /// What rounding took from `point`, as in [`Surface::point_rest`](super::Surface::point_rest).
+    pub point_rest: DVec3,
 }
 
 impl Ray {

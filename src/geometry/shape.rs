@@ -180,21 +180,28 @@ impl Shape {
     }
 
     /// The surface where `ray` meets this shape in `hit`.
+    #[inline(always)]
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         let own = ray.from.as_ref().filter(|from| from.primitive == hit.primitive);
         if let (Some(from), None) = (&ray.from, own)
             && let (direct, Some(t)) = self.met_directly(ray, from, hit)
         {
-            return self.surface(&direct, &Hit { t, ..*hit });
+            return self.surface_at(&direct, &Hit { t, ..*hit }, None, from.point_rest);
         }
+        self.surface_at(ray, hit, own, DVec3::ZERO)
+    }
+
+    /// As [`surface`](Self::surface), for a ray from this shape (`own`) or from its origin plus `rest`.
+    #[inline(always)]
+    fn surface_at(&self, ray: &Ray, hit: &Hit, own: Option<&Departure>, rest: DVec3) -> Surface {
         match self {
             Self::Sphere(s) => s.surface(ray, hit.t, own),
             Self::Cylinder(s) => s.surface(ray, hit.t, hit.face, own),
             Self::Cone(s) => s.surface(ray, hit.t, hit.face, own),
-            Self::Quad(s) => s.surface(ray, hit.t),
-            Self::Triangle(s) => s.surface(ray, hit.t),
-            Self::Polygon(s) => s.surface(ray, hit.t),
-            Self::Face(s) => s.surface(ray, hit.t),
+            Self::Quad(s) => s.surface(ray, hit.t, rest),
+            Self::Triangle(s) => s.surface(ray, hit.t, rest),
+            Self::Polygon(s) => s.surface(ray, hit.t, rest),
+            Self::Face(s) => s.surface(ray, hit.t, rest),
         }
     }
 
@@ -251,7 +258,8 @@ impl Shape {
         let crossing = first_ahead(&shape.crossings_of(&ray, primitive), f64::INFINITY)?;
         let hit = Hit { t: crossing.t, primitive, face: crossing.face };
         let surface = map.surface_back(&shape.surface(&ray, &hit));
-        Some((Hit { t: rescale.apply(hit.t), ..hit }, surface))
+        // A hit is ahead, even one so near in lengths of a long direction that its distance underflows.
+        Some((Hit { t: rescale.apply(hit.t).max(f64::from_bits(1)), ..hit }, surface))
     }
 }
 

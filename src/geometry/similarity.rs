@@ -103,6 +103,7 @@ impl Similarity {
         let from = ray.from.map(|from| Departure {
             local: self.vector(from.local),
             point: self.point(from.point),
+            point_rest: self.vector(from.point_rest),
             ..from
         });
         (Ray { origin: self.point(ray.origin), dir, from }, ParameterScale(e - self.exponent))
@@ -112,6 +113,7 @@ impl Similarity {
     pub fn surface_back(&self, surface: &Surface) -> Surface {
         Surface {
             point: self.point_back(surface.point),
+            point_rest: scale::scaled(surface.point_rest, -self.exponent),
             local: scale::scaled(surface.local, -self.exponent),
             error: self.length_back(surface.error),
             ..*surface

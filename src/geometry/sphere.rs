@@ -8,7 +8,7 @@ use super::{
     ray::{Departure, Ray},
     shape::ShapeError,
 };
-use crate::math::{Roots, cross};
+use crate::math::{Roots, cross, scale};
 
 /// A sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,10 +83,11 @@ impl Sphere {
         [Crossing::at(t), Crossing::NONE]
     }
 
+    #[inline(always)]
     pub(crate) fn surface(&self, ray: &Ray, t: f64, own: Option<&Departure>) -> Surface {
         let start = own.map_or(ray.origin - self.center, |from| from.local);
         let q = start + ray.dir * t;
-        let normal = q.normalize();
+        let normal = scale::unit(q).unwrap_or(DVec3::Y); // a sphere of no size in the scene
         let local = normal * self.radius;
         let point = self.center + local;
         let error = Surface::error_bound(normal, point.abs() + self.radius);

@@ -31,12 +31,19 @@ pub fn cross(a: DVec3, b: DVec3) -> DVec3 {
 /// Source: Ogita, Rump & Oishi, "Accurate sum and dot product", *SIAM J. Sci. Comput.* 26 (2005), algorithm 5.3.
 #[inline(always)]
 pub fn dot(a: DVec3, b: DVec3) -> f64 {
+    let (sum, rest) = dot_parts(a, b);
+    sum + rest
+}
+
+/// The dot product in two parts, which add up to twice the precision.
+#[inline(always)]
+pub(crate) fn dot_parts(a: DVec3, b: DVec3) -> (f64, f64) {
     let (p, error_p) = two_product(a.x, b.x);
     let (h, error_h) = two_product(a.y, b.y);
     let (s, error_s) = two_sum(p, h);
     let (k, error_k) = two_product(a.z, b.z);
     let (sum, error_sum) = two_sum(s, k);
-    sum + ((error_p + (error_h + error_s)) + (error_k + error_sum))
+    (sum, (error_p + (error_h + error_s)) + (error_k + error_sum))
 }
 
 /// `√(a² + b²)`; squares may overflow, which normalised coordinates rule out.
@@ -47,7 +54,7 @@ pub fn hypot(a: f64, b: f64) -> f64 {
 
 /// The rounded product and its rounding error, exactly `a b` together.
 #[inline(always)]
-fn two_product(a: f64, b: f64) -> (f64, f64) {
+pub(crate) fn two_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;
     (product, a.mul_add(b, -product))
 }

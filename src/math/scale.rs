@@ -35,6 +35,11 @@ pub fn normalized(v: DVec3) -> (DVec3, i32) {
     (scaled(v, e), e)
 }
 
+/// The unit vector along `v`, however short or long that is; `None` for a zero vector or one that is not finite.
+pub fn unit(v: DVec3) -> Option<DVec3> {
+    normalized(v).0.try_normalize()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

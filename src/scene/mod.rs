@@ -7,6 +7,7 @@
 pub mod builtin;
 pub mod desc;
 pub mod error;
+pub mod format;
 pub mod generators;
 pub mod load;
 pub mod nff;
@@ -30,6 +31,7 @@ pub use self::{
     warning::Warning,
 };
 use crate::{
+    aa::AntiAliasing,
     accel::Accel,
     camera::Camera,
     color::Rgb,
@@ -47,6 +49,7 @@ pub struct Scene {
     depth: u32,
     map: Similarity,
     // The rest is in the scene's own coordinates.
+    aa: Option<AntiAliasing>,
     camera: Camera,
     background: Rgb,
     lights: Vec<Light>,
@@ -106,6 +109,7 @@ impl Scene {
             name: name.to_owned(),
             resolution,
             depth,
+            aa: parts.aa,
             camera: camera.mapped(&map),
             background: parts.background,
             lights: lights
@@ -133,6 +137,11 @@ impl Scene {
     /// The deepest level of recursion, unless the user wants another.
     pub fn depth(&self) -> u32 {
         self.depth
+    }
+
+    /// How pixels are sampled, if the scene says it and the user does not.
+    pub fn aa(&self) -> Option<AntiAliasing> {
+        self.aa
     }
 
     /// The number of primitives.
@@ -190,6 +199,7 @@ impl Scene {
         self.accel.shape(primitive)
     }
 
+    #[inline(always)]
     pub(crate) fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         self.shape(hit.primitive).surface(ray, hit)
     }

@@ -6,15 +6,16 @@ use glam::DVec3;
 
 use super::{
     Scene,
-    builtin::builtins,
+    builtin::{self, builtins},
     error::SceneError,
+    format::SceneText,
     nff,
-    obj::{self, Model, ModelError},
+    obj::{self, files},
     parts::{CameraPlan, Parts, Placement},
-    stage,
+    stage, text,
     warning::Warning,
 };
-use crate::geometry::MeshError;
+use crate::texture::Image;
 
 /// What the user may change about a scene before it is built.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -73,6 +74,7 @@ pub fn load(name: &str, options: &LoadOptions) -> Result<Loaded, SceneError> {
         }
         let parts = match kind.as_deref() {
             Some("obj") => model_alone(path, options, &mut warnings)?,
+            Some("toml") => scene_file(path, &mut warnings)?,
             Some("nff") => {
                 let scene = nff::load_nff(path, options.rows)?;
                 warnings.extend(scene.warnings);
@@ -116,6 +118,55 @@ fn model_alone(
     })
 }
 
+/// The scene of a TOML file; what it names is looked for beside it.
+fn scene_file(path: &Path, warnings: &mut Vec<Warning>) -> Result<Parts, SceneError> {
+    let shown = path.display().to_string();
+    let not_read = |source| SceneError::Text { path: shown.clone(), source };
+    let bytes = text::read_limited(path, LARGEST_SCENE).map_err(not_read)?;
+    let decoded = text::decode(&bytes).map_err(not_read)?;
+    let text = String::from_utf8_lossy(&decoded);
+    let base = path.parent().unwrap_or(Path::new(""));
+    let scene = SceneText::parse(&shown, &text, &|file| {
+        file.starts_with(builtin::PREFIX) || files::find(base, file).is_some()
+    })?;
+    let mut images = |name: &str| picture(base, name);
+    let mut models = |name: &str| {
+        let Some(file) = files::find(base, name) else {
+            return Err(no_file("model", name, base));
+        };
+        let mut model = obj::load_model(&file)?;
+        warnings.append(&mut model.warnings);
+        Ok(model)
+    };
+    Parts::gather(&scene.desc, &mut images, &mut models).map_err(|found| {
+        let found = found.into_iter().map(|(place, error)| (place, error.to_string())).collect();
+        SceneError::Invalid(scene.faults(found))
+    })
+}
+
+/// The largest scene file that is read, in bytes.
+const LARGEST_SCENE: u64 = 1 << 28;
+
+/// The largest picture file that is read, in bytes.
+const LARGEST_PICTURE: u64 = 1 << 30;
+
+fn picture(base: &Path, name: &str) -> Result<Image, SceneError> {
+    if name.starts_with(builtin::PREFIX) {
+        return builtin::picture(name);
+    }
+    let Some(file) = files::find(base, name) else {
+        return Err(no_file("texture", name, base));
+    };
+    let bytes = text::read_limited(&file, LARGEST_PICTURE)
+        .map_err(|source| SceneError::Text { path: file.display().to_string(), source })?;
+    Ok(Image::decode(name, &bytes)?)
+}
+
+fn no_file(what: &'static str, name: &str, base: &Path) -> SceneError {
+    let folder = if base.as_os_str().is_empty() { Path::new(".") } else { base };
+    SceneError::NoFile { what, name: name.to_owned(), folder: folder.display().to_string() }
+}
+
 fn add(
     parts: &mut Parts,
     place: &ModelPlace,
@@ -128,22 +179,7 @@ fn add(
     let at = place.at.unwrap_or(free);
     let shift = at - stage::foot(&bounds) * scale;
     let placement = Placement { scale, shift, ..Placement::NONE };
-    check_fits(&place.path, &model, &placement)?;
+    placement.check(&place.path.display().to_string(), &model)?;
     parts.add_model(model, &placement);
     Ok(())
-}
-
-/// Whether a model still has coordinates when it is placed.
-fn check_fits(path: &Path, model: &Model, placement: &Placement) -> Result<(), SceneError> {
-    let far = model.mesh.vertices().iter().position(|v| !placement.point(*v).is_finite());
-    match far {
-        None => Ok(()),
-        Some(vertex) => Err(SceneError::Model(ModelError::Mesh {
-            path: path.display().to_string(),
-            source: MeshError::NotFinite {
-                vertex,
-                value: placement.point(model.mesh.vertices()[vertex]),
-            },
-        })),
-    }
 }

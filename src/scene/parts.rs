@@ -2,11 +2,12 @@
 
 use glam::{DMat3, DVec3};
 
-use super::obj::Model;
+use super::obj::{Model, ModelError};
 use crate::{
+    aa::AntiAliasing,
     camera::{Camera, CameraError},
     color::Rgb,
-    geometry::{Bounds, Mesh, Shape},
+    geometry::{Bounds, Mesh, MeshError, Shape},
     light::Light,
     material::Material,
 };
@@ -18,6 +19,8 @@ pub struct Parts {
     pub resolution: [u32; 2],
     /// The deepest level of recursion.
     pub depth: u32,
+    /// How pixels are sampled, if the scene says it.
+    pub aa: Option<AntiAliasing>,
     /// Where it is seen from.
     pub camera: CameraPlan,
     /// Shapes other than the faces of meshes.
@@ -86,6 +89,29 @@ impl Placement {
         let p = p * self.scale;
         (if self.turn == DMat3::IDENTITY { p } else { self.turn * p }) + self.shift
     }
+
+    /// The mesh in its place.
+    pub(super) fn placed(&self, mesh: Mesh) -> Mesh {
+        if *self == Self::NONE {
+            return mesh;
+        }
+        mesh.placed(|p| self.point(p), |n| self.turn * n)
+    }
+
+    /// Whether the model of the file `path` still has coordinates in its place.
+    ///
+    /// # Errors
+    /// A vertex is beyond all numbers.
+    pub(super) fn check(&self, path: &str, model: &Model) -> Result<(), ModelError> {
+        let mut places = model.mesh.vertices().iter().map(|v| self.point(*v)).enumerate();
+        match places.find(|(_, p)| !p.is_finite()) {
+            None => Ok(()),
+            Some((vertex, value)) => Err(ModelError::Mesh {
+                path: path.to_owned(),
+                source: MeshError::NotFinite { vertex, value },
+            }),
+        }
+    }
 }
 
 impl Parts {
@@ -100,11 +126,7 @@ impl Parts {
     pub fn add_model(&mut self, model: Model, place: &Placement) {
         let base = self.materials.len() as u32;
         self.materials.extend(model.materials);
-        let mesh = if *place == Placement::NONE {
-            model.mesh
-        } else {
-            model.mesh.placed(|p| place.point(p), |n| place.turn * n)
-        };
+        let mesh = place.placed(model.mesh);
         let material_of = model.material_of.iter().map(|m| m + base).collect();
         self.meshes.push(MeshPart { mesh, material_of });
     }

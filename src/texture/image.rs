@@ -97,6 +97,7 @@ impl Image {
     ///
     /// Bilinear between the four texels around the place, whose centres lie half a texel inside the picture; beyond the
     /// outermost centres the edge goes on.
+    #[inline(always)]
     pub fn sample(&self, uv: DVec2) -> Rgb {
         self.bilinear(uv, Beyond::Edge)
     }

@@ -50,6 +50,7 @@ pub struct UvMap {
 
 impl Texture {
     /// The colour at a point, in linear light, and which of its colours a pattern shows there (0 for what has no edges).
+    #[inline(always)]
     pub fn at(&self, at: &TexturePoint) -> (Rgb, u32) {
         match self {
             Self::Solid(color) => (*color, 0),

@@ -19,6 +19,7 @@ pub struct Checker {
 
 impl Checker {
     /// The colour at a point, and its number: 0 for even, 1 for odd.
+    #[inline(always)]
     pub fn at(&self, p: DVec3) -> (Rgb, u32) {
         let cell = ((p - self.origin) / self.size).floor();
         let half = (cell.x + cell.z) * 0.5;
@@ -50,6 +51,7 @@ pub struct Plaid {
 
 impl Plaid {
     /// The colour at a point, and its number: how many stripes are there.
+    #[inline(always)]
     pub fn at(&self, p: DVec3) -> (Rgb, u32) {
         let q = (p - self.origin) / self.size;
         let on_stripe = |cell: f64| cell.floor().rem_euclid(3.0) < 0.5;

@@ -3,6 +3,7 @@
 mod broken;
 mod models;
 mod nff;
+mod program;
 
 use std::path::PathBuf;
 

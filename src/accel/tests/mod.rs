@@ -1,5 +1,6 @@
 //! Every answer is that of the brute-force reference, to the bit, with any instructions.
 
+mod lanes;
 mod scenes;
 
 use std::ops::ControlFlow;
@@ -225,4 +226,35 @@ fn numbers_stay_with_their_shapes() {
     for (number, shape) in (0..).zip(&shapes) {
         assert_eq!(accel.shape(number), shape);
     }
+}
+
+/// obvhs alone takes seconds to minutes for these, and makes a tree as deep as there are primitives.
+#[test]
+fn equal_boxes_and_rows_build_fast_and_flat() {
+    let start = std::time::Instant::now();
+    for step in [DVec3::ZERO, DVec3::X, DVec3::ONE] {
+        let shapes: Vec<Shape> =
+            (0..20_000).map(|k| scenes::sphere(step * f64::from(k), 0.5)).collect();
+        let accel = Accel::build(shapes);
+        let ray =
+            Ray::new(DVec3::new(100.0, 100.0, -5.0) * step.signum(), DVec3::new(0.0, 0.0, 1.0));
+        let _ = accel.nearest(&ray, f64::INFINITY);
+        assert_eq!(accel.inside, 20_000);
+    }
+    assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
+}
+
+#[test]
+fn the_balanced_tree_finds_the_same() {
+    let mut random = Random(23);
+    let shapes: Vec<Shape> = (0..300).map(|_| scenes::sphere(random.point(), 0.1)).collect();
+    let division = super::build::Division::of(&shapes);
+    let frame = division.frame.expect("finite");
+    let boxes = super::build::boxes(&shapes, &division.inside, &frame);
+    let wide = super::collapse::collapse(&super::build::balanced(&boxes), |_| {
+        super::collapse::Kind::Sphere
+    });
+    let mut order = wide.order.clone();
+    order.sort_unstable();
+    assert!(order.into_iter().eq(0..300) && wide.depth <= 9, "depth {}", wide.depth);
 }

@@ -38,12 +38,20 @@ const PICTURES: &[(&str, &[u8])] = &[
     ("flower.png", include_bytes!("../../../textures/flower.png")),
 ];
 
+/// What begins the name of one of the program's own pictures in a scene file.
+pub const PREFIX: &str = "builtin:";
+
 /// The built-in scenes.
 pub fn builtins() -> &'static [Builtin] {
     BUILTINS
 }
 
 impl Builtin {
+    /// The scene as a file would say it, without generated objects.
+    pub fn text(&self) -> &'static str {
+        self.text
+    }
+
     /// The scene's description.
     ///
     /// # Errors
@@ -71,6 +79,17 @@ impl Builtin {
     }
 }
 
+/// The built-in scene of this name.
+///
+/// # Errors
+/// No scene has this name.
+pub fn builtin(name: &str) -> Result<&'static Builtin, SceneError> {
+    BUILTINS.iter().find(|builtin| builtin.name == name).ok_or_else(|| {
+        let known = BUILTINS.iter().map(|builtin| builtin.name).collect::<Vec<_>>().join(", ");
+        SceneError::UnknownScene { name: name.to_owned(), known }
+    })
+}
+
 /// The built-in scene of this name, ready to trace.
 ///
 /// # Errors
@@ -84,10 +103,7 @@ pub fn load_builtin(name: &str) -> Result<Scene, SceneError> {
 /// # Errors
 /// No scene has this name; or its objects are given by its description, but a number of them was asked for.
 pub fn load_builtin_of(name: &str, objects: Option<u32>) -> Result<Scene, SceneError> {
-    let builtin = BUILTINS.iter().find(|builtin| builtin.name == name).ok_or_else(|| {
-        let known = BUILTINS.iter().map(|builtin| builtin.name).collect::<Vec<_>>().join(", ");
-        SceneError::UnknownScene { name: name.to_owned(), known }
-    })?;
+    let builtin = builtin(name)?;
     Scene::assemble(builtin.name, builtin.parts(objects)?)
 }
 
@@ -96,6 +112,7 @@ pub fn load_builtin_of(name: &str, objects: Option<u32>) -> Result<Scene, SceneE
 /// # Errors
 /// None has this name.
 pub fn picture(name: &str) -> Result<Image, SceneError> {
+    let name = name.strip_prefix(PREFIX).unwrap_or(name);
     let Some((_, bytes)) = PICTURES.iter().find(|(known, _)| *known == name) else {
         let known = PICTURES.iter().map(|(known, _)| *known).collect::<Vec<_>>().join(", ");
         return Err(SceneError::UnknownImage { name: name.to_owned(), known });

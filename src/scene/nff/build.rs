@@ -296,6 +296,7 @@ impl Builder {
             parts: Parts {
                 resolution: view.resolution,
                 depth: DEPTH,
+                aa: None,
                 camera,
                 lights: self.lights.iter().map(light).collect(),
                 background: self.background,

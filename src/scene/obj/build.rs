@@ -201,7 +201,7 @@ impl<'a> Builder<'a> {
         let t = self.degenerate;
         warn(t, format!("dropped {} without area{}", faces(t), first(t)));
         let t = self.duplicate;
-        warn(t, format!("dropped {} that repeat another{}", faces(t), first(t)));
+        warn(t, format!("dropped {} given before{}", faces(t), first(t)));
         let t = self.repeated;
         warn(t, format!("repaired {} with a corner given twice{}", faces(t), first(t)));
         let t = tallies.short_faces;

@@ -70,19 +70,21 @@ fn spread_across(subject: &Subject, question: &Question, t: f64) -> f64 {
     (4.0 * by_b + 2.0 * t * by_a) / a.abs()
 }
 
-/// The crossing that the ray from `question` must find ahead, if any, or `None` if that is undecidable.
-fn ahead(
-    subject: &Subject,
-    question: &Question,
-    face: u8,
-    inward: bool,
-) -> Option<Option<Crossing>> {
+/// What the ray must find ahead.
+enum Ahead {
+    Nothing,
+    Far(Crossing),
+    Undecidable,
+}
+
+/// What the ray from `question`, a point of `face`, must find ahead on the same shape.
+fn ahead(subject: &Subject, question: &Question, face: u8, inward: bool) -> Ahead {
     let flat = !matches!(
         subject,
         Subject::Sphere { .. } | Subject::Cylinder { .. } | Subject::Cone { .. }
     );
     if flat || !inward {
-        return Some(None); // flat, or convex
+        return Ahead::Nothing; // flat, or convex
     }
     let closed = match subject.clone() {
         Subject::Cylinder { base, top, radius, .. } => {
@@ -94,20 +96,20 @@ fn ahead(
         other => other,
     };
     // An open shape is left through its ends unseen.
-    let mut exit = closed.answer_to(question).crossings.pop()?;
+    let Some(mut exit) = closed.answer_to(question).crossings.pop() else {
+        return Ahead::Undecidable;
+    };
     if exit.faces[0] == 0 && face == 0 {
         exit.spread = spread_across(subject, question, exit.t.f64());
     }
-    if exit.margin() < Answer::DECIDABLE {
-        return None;
+    let at_the_rim = !subject.is_closed() && exit.faces.len() > 1;
+    if exit.margin() < Answer::DECIDABLE || at_the_rim {
+        Ahead::Undecidable
+    } else if subject.is_closed() || exit.faces[0] == 0 {
+        Ahead::Far(exit)
+    } else {
+        Ahead::Nothing
     }
-    if subject.is_closed() {
-        return Some(Some(exit));
-    }
-    if exit.faces.len() > 1 {
-        return None; // at the rim
-    }
-    Some((exit.faces[0] == 0).then_some(exit))
 }
 
 /// Judges the ray that leaves `subject`, met by `ray`, along `dir`.
@@ -117,12 +119,11 @@ fn judge(subject: &Subject, shape: &Shape, ray: &Ray, dir: DVec3, inward: bool) 
     let start = turned_back(subject, surface.local);
     let mut question = subject.question(&start, &big_vec(dir));
     question.local.f = onto_face(subject, &question, hit.face);
-    let Some(right) = ahead(subject, &question, hit.face, inward) else {
-        return Verdict::Undecidable;
-    };
+    let right = ahead(subject, &question, hit.face, inward);
     match (right, shape.first_hit(SELF, &leaving)) {
-        (None, None) => Verdict::Right { ks: vec![] },
-        (Some(right), Some((next, at))) => {
+        (Ahead::Undecidable, _) => Verdict::Undecidable,
+        (Ahead::Nothing, None) => Verdict::Right { ks: vec![] },
+        (Ahead::Far(right), Some((next, at))) => {
             let k = right.k(&question.parameter(next.t));
             if k > K_MAX || !right.faces.contains(&next.face) {
                 return Verdict::Wrong(format!(
@@ -141,8 +142,10 @@ fn judge(subject: &Subject, shape: &Shape, ray: &Ray, dir: DVec3, inward: bool) 
             }
             Verdict::Right { ks: vec![k] }
         }
-        (None, Some((next, _))) => Verdict::Wrong(format!("acne: {next:?}")),
-        (Some(right), None) => Verdict::Wrong(format!("leak: t = {:e} missed", right.t.f64())),
+        (Ahead::Nothing, Some((next, _))) => Verdict::Wrong(format!("acne: {next:?}")),
+        (Ahead::Far(right), None) => {
+            Verdict::Wrong(format!("leak: t = {:e} missed", right.t.f64()))
+        }
     }
 }
 

@@ -1,0 +1,95 @@
+//! A pixel that got more than its centre.
+
+use super::estimate::{Spread, sequence_share, sequence_unseen};
+use super::levels::levels;
+use crate::color::Rgb;
+
+/// A camera ray's answer.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// Linear light, each channel clamped to `[0, 1]`.
+    pub color: Rgb,
+    /// What the ray and those that came of it met: equal for equal trees of surfaces, lights and pattern cells.
+    pub signature: u32,
+    /// How many rays it took, those towards the lights included.
+    pub rays: u32,
+}
+
+/// The samples of a pixel so far.
+#[derive(Clone, Debug)]
+pub struct Refined {
+    /// Half the centre and an eighth of each corner.
+    cross: Rgb,
+    sum: Rgb,
+    points: u32,
+    spread: Spread,
+}
+
+impl Refined {
+    /// A pixel with its centre and corners.
+    pub fn new(center: &Sample, corners: &[(Rgb, u32); 4]) -> Self {
+        let mut spread = Spread::about(levels(center.color));
+        spread.add(center.color, center.signature);
+        let mut cross = center.color * 0.5;
+        for (color, signature) in corners {
+            cross += *color * 0.125;
+            spread.add(*color, *signature);
+        }
+        Self { cross, sum: Rgb::ZERO, points: 0, spread }
+    }
+
+    /// Takes in the next sample of the pixel's sequence.
+    pub fn add(&mut self, sample: &Sample) {
+        self.sum += sample.color;
+        self.points += 1;
+        self.spread.add(sample.color, sample.signature);
+    }
+
+    /// How many samples of the sequence there are.
+    pub fn points(&self) -> u32 {
+        self.points
+    }
+
+    /// The pixel's colour: the mean of the sequence; few samples are helped by centre and corners.
+    pub fn color(&self) -> Rgb {
+        let weight = match self.points {
+            0..12 => 2.0,
+            12..24 => 1.0,
+            _ => 0.0,
+        };
+        (self.sum + self.cross * weight) / (self.points as f32 + weight)
+    }
+
+    /// The colour's squared error; `contrast` is that of the pixel's [`Look`](super::estimate::Look), zero unless suspect.
+    pub fn error(&self, contrast: f32) -> f32 {
+        let seen = self.spread.error(sequence_share(self.points));
+        let alike = self.spread.kinds() == 1;
+        if alike { seen + sequence_unseen(self.points) * contrast } else { seen }
+    }
+}
+
+/// The numbers of samples of the sequence that a pixel stops at, for at most `most` rays through a pixel: centre and a
+/// corner of its own (others belong to neighbours) and 4, 8, 16, ... samples.
+pub fn stages(most: u32) -> Vec<u32> {
+    let most = most.saturating_sub(2);
+    let powers = (2..31).map(|k| 1_u32 << k);
+    let mut stages: Vec<u32> = powers.take_while(|points| *points < most).collect();
+    if most >= 2 {
+        stages.push(most);
+    }
+    stages
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stages_are_powers_of_two_up_to_the_last() {
+        assert_eq!(stages(64), [4, 8, 16, 32, 62]);
+        assert_eq!(stages(18), [4, 8, 16]);
+        assert_eq!(stages(10), [4, 8]);
+        assert_eq!(stages(4), [2]);
+        assert!([0, 1, 2, 3].iter().all(|&most| stages(most).is_empty()));
+    }
+}

@@ -1,0 +1,126 @@
+//! Workers that take tile after tile, and how far they are.
+
+use std::sync::{Mutex, PoisonError};
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use super::{
+    Progress,
+    plane::{Area, Plane},
+};
+use crate::aa::Sample;
+
+/// Asks the colour of places on the film.
+///
+/// An answer depends on its place alone. Places are in pixels from the upper left corner of the whole picture.
+pub trait Sampler {
+    /// Puts the samples at `places` behind what `samples` holds, in their order. Neighbours in the list are near each
+    /// other in the picture.
+    fn sample(&mut self, places: &[DVec2], samples: &mut Vec<Sample>);
+}
+
+/// How far all the waves together are.
+pub(super) struct Meter<'a> {
+    progress: &'a (dyn Fn(Progress) + Sync),
+    state: Mutex<Progress>,
+}
+
+impl<'a> Meter<'a> {
+    pub(super) fn new(total: u64, progress: &'a (dyn Fn(Progress) + Sync)) -> Self {
+        Self { progress, state: Mutex::new(Progress { done: 0, total }) }
+    }
+
+    /// Reports that `count` more are done; never that all are but by [`Meter::finish`].
+    fn add(&self, count: u64) {
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        state.done = (state.done + count).min(state.total);
+        // Still under the lock, so that progress never goes backwards.
+        (self.progress)(*state);
+    }
+
+    /// Reports a share of the whole, if that is more than was done.
+    pub(super) fn reach(&self, share: f64) {
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        let done = (state.total as f64 * share.clamp(0.0, 1.0)) as u64;
+        state.done = state.done.max(done);
+        (self.progress)(*state);
+    }
+}
+
+/// The workers.
+pub(super) struct Crew<'a, S> {
+    pub(super) new_sampler: &'a (dyn Fn() -> S + Sync),
+    pub(super) meter: &'a Meter<'a>,
+}
+
+/// Lists that a worker keeps from tile to tile.
+#[derive(Debug, Default)]
+pub(super) struct Scratch {
+    pub(super) places: Vec<DVec2>,
+    pub(super) samples: Vec<Sample>,
+}
+
+impl<S: Sampler> Crew<'_, S> {
+    /// Lets the workers do `work` on every tile of `area`; `counted` is whether a tile's pixels count as done.
+    ///
+    /// Tiles for which `stop` says so are left out.
+    pub(super) fn run(
+        &self,
+        area: &Area,
+        counted: bool,
+        stop: impl Fn() -> bool + Sync,
+        work: impl Fn(&mut S, &mut Scratch, &Area) + Sync,
+    ) {
+        area.tiles().into_par_iter().with_max_len(1).for_each_init(
+            || ((self.new_sampler)(), Scratch::default()),
+            |(sampler, scratch), tile| {
+                if stop() {
+                    return;
+                }
+                work(sampler, scratch, &tile);
+                if counted {
+                    self.meter.add(tile.len() as u64);
+                }
+            },
+        );
+    }
+}
+
+/// The pixels of a tile in Morton order, so that any run of them is close together and their rays go the same way.
+pub(super) fn in_turn(tile: &Area) -> impl Iterator<Item = (i64, i64)> + use<> {
+    let tile = *tile;
+    let side = tile.width().max(tile.height()).next_power_of_two() as u32;
+    let even_bits = |code: u32| (0..16).fold(0, |x, bit| x | ((code >> (2 * bit)) & 1) << bit);
+    (0..side * side)
+        .map(move |code| {
+            (tile.x0 + i64::from(even_bits(code)), tile.y0 + i64::from(even_bits(code >> 1)))
+        })
+        .filter(move |&(x, y)| tile.contains(x, y))
+}
+
+/// The centre of a pixel on the film.
+pub(super) fn center(x: i64, y: i64) -> DVec2 {
+    DVec2::new(x as f64 + 0.5, y as f64 + 0.5)
+}
+
+/// Traces the centre of every pixel of the plane.
+pub(super) fn trace_centers<S: Sampler>(crew: &Crew<S>, area: &Area) -> Plane<Sample> {
+    let centers = Mutex::new(Plane::new(*area, Sample::default()));
+    crew.run(
+        area,
+        true,
+        || false,
+        |sampler, scratch, tile| {
+            scratch.places.clear();
+            scratch.samples.clear();
+            scratch.places.extend(in_turn(tile).map(|(x, y)| center(x, y)));
+            sampler.sample(&scratch.places, &mut scratch.samples);
+            let mut centers = centers.lock().unwrap_or_else(PoisonError::into_inner);
+            for ((x, y), sample) in in_turn(tile).zip(&scratch.samples) {
+                *centers.at_mut(x, y) = *sample;
+            }
+        },
+    );
+    centers.into_inner().unwrap_or_else(PoisonError::into_inner)
+}

@@ -1,0 +1,164 @@
+//! Rendering towards an error or until a time.
+
+use std::time::{Duration, Instant};
+
+use super::{
+    Outcome,
+    adaptive::{Adaptive, Threshold},
+    crew::{Crew, Sampler},
+};
+
+/// The ladder of thresholds, in squared levels for each ray: its first step, and steps to halve it.
+const FIRST_STEP: f64 = 1024.0;
+const STEPS_TO_HALF: f64 = 2.0;
+/// The last step: thresholds below make no difference to an 8-bit picture.
+const LAST_STEP: u32 = 80;
+/// The picture's error goes about like this power of the threshold.
+const ERROR_POWER: f64 = 0.27;
+/// The part of a predicted jump down the ladder that is taken at once, so as not to overshoot.
+const JUMP: f64 = 0.6;
+/// The part of the time left that a step of a time-limited picture should take.
+const SHARE_OF_TIME: f64 = 0.3;
+/// Less time than this is not worth a step.
+const SHORTEST: Duration = Duration::from_millis(4);
+
+/// The threshold at a step of the ladder.
+fn at_step(step: u32) -> f32 {
+    (FIRST_STEP * (-f64::from(step) / STEPS_TO_HALF).exp2()) as f32
+}
+
+/// Refines where the squared error for each ray is largest, until the estimate is `wanted` levels or less.
+///
+/// The threshold goes down a fixed ladder, and the picture is that of the threshold at which it ends: what is spent on the way is
+/// part of it.
+pub(super) fn reach_error<S: Sampler>(
+    adaptive: &mut Adaptive,
+    crew: &Crew<S>,
+    wanted: f64,
+) -> Outcome {
+    let start = adaptive.estimated_rmse().max(f64::MIN_POSITIVE);
+    let mut step = 0;
+    let mut per_ray = None;
+    loop {
+        let error = adaptive.estimated_rmse();
+        if error <= wanted {
+            return Outcome { per_ray, ..Outcome::default() };
+        }
+        if step > LAST_STEP || !adaptive.can_improve() {
+            return Outcome { per_ray, missed_error: Some(wanted), ..Outcome::default() };
+        }
+        crew.meter.reach((start / error).ln() / (start / wanted).ln());
+        let threshold = at_step(step);
+        adaptive.refine(crew, Threshold::PerRay(threshold), false, || false);
+        per_ray = Some(threshold);
+        let steps = STEPS_TO_HALF * (adaptive.estimated_rmse() / wanted).log2() / ERROR_POWER;
+        step += if steps.is_finite() { (steps * JUMP).max(1.0) as u32 } else { LAST_STEP / 4 };
+    }
+}
+
+/// Refines where the squared error for each ray is largest, until `end`.
+///
+/// Each step takes a part of the time left, as predicted from the rays before; the pixels of the last one are taken by chance,
+/// so that no part of the picture is left out.
+pub(super) fn reach_time<S: Sampler>(
+    adaptive: &mut Adaptive,
+    crew: &Crew<S>,
+    started: Instant,
+    end: Instant,
+) -> Outcome {
+    let whole = end.saturating_duration_since(started).as_secs_f64().max(1e-9);
+    let stop = || Instant::now() >= end;
+    if stop() {
+        return Outcome { late: Some(started.elapsed()), ..Outcome::default() };
+    }
+    let mut seconds_per_ray = started.elapsed().as_secs_f64() / adaptive.spent().max(1) as f64;
+    loop {
+        let left = end.saturating_duration_since(Instant::now());
+        if left < SHORTEST {
+            break;
+        }
+        crew.meter.reach(1.0 - left.as_secs_f64() / whole);
+        let demand = adaptive.demand();
+        let affordable = left.as_secs_f64() / seconds_per_ray;
+        let Some(level) = demand.level_for(affordable * SHARE_OF_TIME) else {
+            break; // nothing left to refine
+        };
+        let share = (affordable * 0.9 / demand.at_level(level).max(1) as f64).min(1.0);
+        let (before, stepping) = (adaptive.spent(), Instant::now());
+        let threshold = Threshold::PerRayOfSome(demand.threshold(level), share as f32);
+        adaptive.refine(crew, threshold, false, stop);
+        let rays = adaptive.spent() - before;
+        if rays > 0 {
+            seconds_per_ray = stepping.elapsed().as_secs_f64() / rays as f64;
+        } else if share >= 1.0 {
+            break;
+        }
+    }
+    Outcome { cut: true, ..Outcome::default() }
+}
+
+/// How many rays the next stages of the pixels take, by the squared error for each ray that they are worth.
+pub(super) struct Demand {
+    /// By powers of √2 of the threshold, from the top of the ladder down.
+    rays: [u64; LAST_STEP as usize + 1],
+}
+
+impl Demand {
+    pub(super) fn new() -> Self {
+        Self { rays: [0; LAST_STEP as usize + 1] }
+    }
+
+    /// Adds a stage that takes `rays` rays and is worth `per_ray` squared levels for each.
+    pub(super) fn add(&mut self, per_ray: f32, rays: u64) {
+        let step = STEPS_TO_HALF * (FIRST_STEP / f64::from(per_ray)).log2();
+        let step = step.ceil().max(0.0); // infinite for 0
+        if step <= f64::from(LAST_STEP) {
+            self.rays[step as usize] += rays;
+        }
+    }
+
+    /// The rays that stages worth at least the level's threshold take.
+    fn at_level(&self, level: usize) -> u64 {
+        self.rays[..=level].iter().sum()
+    }
+
+    /// The first level that takes at least so many rays, or all there are; none if there are none.
+    fn level_for(&self, rays: f64) -> Option<usize> {
+        let all = self.at_level(self.rays.len() - 1);
+        if all == 0 {
+            return None;
+        }
+        (0..self.rays.len()).find(|&level| {
+            let sum = self.at_level(level);
+            sum > 0 && (sum as f64 >= rays || sum == all)
+        })
+    }
+
+    fn threshold(&self, level: usize) -> f32 {
+        at_step(level as u32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Oracle: levels counted by hand; a stage is above the threshold of its level and all lower ones.
+    #[test]
+    fn demand_is_counted_by_level() {
+        let mut demand = Demand::new();
+        assert_eq!(demand.level_for(1.0), None);
+        demand.add(2000.0, 10); // above the first step
+        demand.add(512.0, 5); // two steps down
+        demand.add(500.0, 7); // three
+        demand.add(0.0, 100); // never
+        demand.add(1e-30, 100);
+        assert_eq!((demand.at_level(0), demand.at_level(2), demand.at_level(3)), (10, 15, 22));
+        assert_eq!(demand.level_for(1.0), Some(0));
+        assert_eq!(demand.level_for(11.0), Some(2));
+        assert_eq!(demand.level_for(1e9), Some(3));
+        for (level, per_ray) in [(0, 2000.0), (2, 512.0), (3, 500.0)] {
+            assert!(demand.threshold(level) <= per_ray, "{level}");
+        }
+    }
+}

@@ -1,0 +1,293 @@
+//! From a scene to a film: tiles in parallel, each a function of scene and options alone.
+
+mod adaptive;
+mod crew;
+mod goal;
+mod look;
+mod plain;
+mod plane;
+
+use std::{
+    num::NonZeroUsize,
+    sync::{Mutex, PoisonError},
+    time::{Duration, Instant},
+};
+
+use glam::DVec2;
+use thiserror::Error;
+
+pub use crew::Sampler;
+
+pub use crate::trace::RayCounts;
+use crate::{
+    aa::{AntiAliasing, Sample},
+    camera::View,
+    color::Rgb,
+    film::{Film, Tile},
+    geometry::Ray,
+    scene::Scene,
+    trace::{self, BATCH, Tracer},
+};
+use adaptive::{Adaptive, Threshold};
+use crew::{Crew, Meter};
+use plane::Area;
+
+/// What the user may choose; the rest is the scene's.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RenderOptions {
+    /// Width and height in pixels, instead of the scene's.
+    pub size: Option<[u32; 2]>,
+    /// How pixels are sampled.
+    pub aa: AntiAliasing,
+    /// The deepest level of recursion, instead of the scene's; camera rays have level 1.
+    pub depth: Option<u32>,
+    /// The part of the picture that is wanted, instead of all of it.
+    pub crop: Option<Tile>,
+    /// What the adaptive mode aims at, instead of an error in each pixel.
+    pub goal: Goal,
+    /// How many threads work; all cores by default. The picture is the same for any number.
+    pub threads: Option<NonZeroUsize>,
+}
+
+/// What a render aims at.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Goal {
+    /// What the anti-aliasing mode says of each pixel.
+    #[default]
+    Mode,
+    /// An estimated error of the part that is rendered: root mean square of all channels, in levels of 255. Rays go where they
+    /// reduce it most. Needs the adaptive mode, whose own error is not minded.
+    Error(f64),
+    /// The least error until then, but one ray in each pixel at least. Needs the adaptive mode, whose own error is not minded.
+    /// How far it gets depends on the machine, so this picture is not the same every time.
+    Until(Instant),
+}
+
+/// How a render ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Outcome {
+    /// The squared error in levels for each ray, of the pixel's next stage, at which pixels stopped, if the goal was an error:
+    /// the same value gives the same pixels, whatever part is rendered.
+    pub per_ray: Option<f32>,
+    /// The error that was wanted but not reached.
+    pub missed_error: Option<f64>,
+    /// Pixels that got all the rays they may get but did not settle, if that was the goal.
+    pub unsettled: usize,
+    /// How long one ray in each pixel took, if the time was up by then.
+    pub late: Option<Duration>,
+    /// Whether the clock decided what was refined.
+    pub cut: bool,
+}
+
+/// How far a render is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// Pixels done.
+    pub done: u64,
+    /// Pixels in all.
+    pub total: u64,
+}
+
+/// A picture, and what it took.
+#[derive(Clone, Debug)]
+pub struct Rendering {
+    /// The picture.
+    pub film: Film,
+    /// The estimated squared error of each pixel, in levels of 255, in the order of [`Film::pixels`].
+    pub errors: Vec<f32>,
+    /// The picture's estimated error against the exact average over each pixel: root mean square of all channels, in levels of
+    /// 255.
+    pub estimated_rmse: f64,
+    /// How it ended.
+    pub outcome: Outcome,
+    /// The rays cast.
+    pub rays: RayCounts,
+    /// The threads used.
+    pub threads: usize,
+    /// The time, in seconds, without loading and writing.
+    pub seconds: f64,
+    /// The deepest level of recursion that was allowed.
+    pub depth: u32,
+}
+
+/// Why there is no picture.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum RenderError {
+    /// The worker threads could not be started.
+    #[error("{threads} threads cannot be started: {source}")]
+    Threads {
+        /// How many were wanted.
+        threads: usize,
+        /// The system's reason.
+        source: rayon::ThreadPoolBuildError,
+    },
+    /// The part that is wanted is empty or not in the picture.
+    #[error(
+        "the part from ({}, {}) to ({}, {}) is not in a picture of {width}x{height} pixels, or empty",
+        part.x0, part.y0, part.x1, part.y1
+    )]
+    Crop {
+        /// The part.
+        part: Tile,
+        /// Pixels in a row of the picture.
+        width: u32,
+        /// Rows of the picture.
+        height: u32,
+    },
+}
+
+/// A picture before it is a film.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// The colours, row by row, linear.
+    pub colors: Vec<Rgb>,
+    /// The rays through each pixel.
+    pub samples: Vec<u32>,
+    /// The estimated squared error of each pixel, in levels of 255.
+    pub errors: Vec<f32>,
+    /// How it ended.
+    pub outcome: Outcome,
+    /// What the mean of `errors` is to be multiplied by.
+    factor: f64,
+}
+
+impl Picture {
+    /// The estimated error: root mean square of all channels, in levels of 255.
+    pub fn estimated_rmse(&self) -> f64 {
+        let sum: f64 = self.errors.iter().copied().map(f64::from).sum();
+        (self.factor * sum / self.errors.len().max(1) as f64).sqrt()
+    }
+}
+
+/// The part `part` of a picture `width` pixels wide, of whatever `new_sampler`'s samplers see; each worker thread has its own.
+///
+/// Every pixel depends on its place in the whole picture and on what is seen within a pixel's width around it, never on `part`.
+pub fn picture<S: Sampler>(
+    part: &Tile,
+    width: u32,
+    aa: AntiAliasing,
+    goal: Goal,
+    new_sampler: &(dyn Fn() -> S + Sync),
+    progress: &(dyn Fn(Progress) + Sync),
+) -> Picture {
+    let corner = |x: u32, y: u32| (i64::from(x), i64::from(y));
+    let ((x0, y0), (x1, y1)) = (corner(part.x0, part.y0), corner(part.x1, part.y1));
+    let area = Area { x0, y0, x1, y1 };
+    let pixels = area.len() as u64;
+    let started = Instant::now();
+    match aa {
+        AntiAliasing::None | AntiAliasing::Grid { side: 1 } => {
+            let meter = Meter::new(pixels, progress);
+            plain::centers(&Crew { new_sampler, meter: &meter }, &area)
+        }
+        AntiAliasing::Grid { side } => {
+            let meter = Meter::new(pixels, progress);
+            plain::grid(&Crew { new_sampler, meter: &meter }, &area, side)
+        }
+        AntiAliasing::Sequence { count } => {
+            let meter = Meter::new(pixels, progress);
+            plain::sequence(&Crew { new_sampler, meter: &meter }, &area, width, count)
+        }
+        AntiAliasing::Adaptive { error, most } => {
+            let meter = Meter::new(2 * pixels, progress);
+            let crew = Crew { new_sampler, meter: &meter };
+            let mut adaptive = Adaptive::new(&crew, &area, width, most);
+            meter.reach(0.5);
+            let outcome = match goal {
+                Goal::Mode => {
+                    adaptive.refine(&crew, Threshold::Error(error * error), true, || false);
+                    let unsettled = adaptive.unsettled(error * error);
+                    Outcome { unsettled, ..Outcome::default() }
+                }
+                Goal::Error(wanted) => goal::reach_error(&mut adaptive, &crew, wanted),
+                Goal::Until(end) => goal::reach_time(&mut adaptive, &crew, started, end),
+            };
+            meter.reach(1.0);
+            Picture { outcome, ..adaptive.into_picture() }
+        }
+    }
+}
+
+/// Renders `scene`; `progress` is called from the worker threads after every tile.
+///
+/// The picture depends on the scene, size, anti-aliasing and depth alone: it is the same, byte for byte, for any number
+/// of threads.
+///
+/// # Errors
+/// The threads cannot be started.
+pub fn render(
+    scene: &Scene,
+    options: &RenderOptions,
+    progress: &(dyn Fn(Progress) + Sync),
+) -> Result<Rendering, RenderError> {
+    let started = Instant::now();
+    let [width, height] = options.size.unwrap_or(scene.resolution());
+    let depth = options.depth.unwrap_or(scene.depth());
+    let cores = || std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+    let threads = options.threads.map_or_else(cores, NonZeroUsize::get);
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .map_err(|source| RenderError::Threads { threads, source })?;
+
+    let view = scene.camera().view(width, height);
+    let part = options.crop.unwrap_or(Tile { x0: 0, y0: 0, x1: width, y1: height });
+    if part.x0 >= part.x1 || part.y0 >= part.y1 || part.x1 > width || part.y1 > height {
+        return Err(RenderError::Crop { part, width, height });
+    }
+    let rays = Mutex::new(RayCounts::default());
+    let new_sampler = || Worker {
+        tracer: Tracer::new(scene, depth),
+        view,
+        rays: Vec::new(),
+        traced: Vec::new(),
+        counts: &rays,
+    };
+    let picture =
+        pool.install(|| picture(&part, width, options.aa, options.goal, &new_sampler, progress));
+    let estimated_rmse = picture.estimated_rmse();
+    let Picture { colors, samples, errors, outcome, .. } = picture;
+    Ok(Rendering {
+        film: Film::from_parts(part.width(), part.height(), colors, samples),
+        errors,
+        estimated_rmse,
+        outcome,
+        rays: rays.into_inner().unwrap_or_else(PoisonError::into_inner),
+        threads,
+        seconds: started.elapsed().as_secs_f64(),
+        depth,
+    })
+}
+
+/// Samples a scene through its camera; what it traced is added to `counts` in the end.
+struct Worker<'a> {
+    tracer: Tracer<'a>,
+    view: View,
+    rays: Vec<Ray>,
+    traced: Vec<trace::Sample>,
+    counts: &'a Mutex<RayCounts>,
+}
+
+impl Sampler for Worker<'_> {
+    fn sample(&mut self, places: &[DVec2], samples: &mut Vec<Sample>) {
+        for some in places.chunks(BATCH) {
+            self.rays.clear();
+            self.rays.extend(some.iter().map(|place| self.view.ray(*place)));
+            self.tracer.trace(&self.rays, &mut self.traced);
+            samples.extend(self.traced.iter().map(|traced| Sample {
+                // A NaN, which no valid scene has, would be black.
+                color: traced.color.max(Rgb::ZERO).min(Rgb::ONE),
+                signature: traced.signature,
+                rays: traced.rays,
+            }));
+        }
+    }
+}
+
+impl Drop for Worker<'_> {
+    fn drop(&mut self) {
+        let mut counts = self.counts.lock().unwrap_or_else(PoisonError::into_inner);
+        *counts = *counts + self.tracer.counts();
+    }
+}

@@ -1,0 +1,152 @@
+//! Pictures with the same rays in every pixel, and the estimate of their error from these rays alone.
+
+use std::sync::{Mutex, PoisonError};
+
+use glam::DVec2;
+
+use super::{
+    Outcome, Picture,
+    crew::{Crew, Sampler, in_turn, trace_centers},
+    look::Window,
+    plane::{Area, Plane},
+};
+use crate::{
+    aa::{
+        estimate::{Spread, bare_sequence_share, grid_share, grid_unseen, sequence_unseen},
+        grid_places,
+        levels::levels,
+        sobol::Sequence,
+    },
+    color::Rgb,
+};
+
+/// Places that are sampled at a time.
+const BATCH: usize = 64;
+
+/// One ray through each centre.
+pub(super) fn centers<S: Sampler>(crew: &Crew<S>, area: &Area) -> Picture {
+    let centers = trace_centers(crew, area);
+    let errors = Mutex::new(Plane::new(*area, 0.0));
+    crew.run(
+        area,
+        false,
+        || false,
+        |_, _, tile| {
+            let window = Window::of_centers(tile, &centers);
+            let own: Vec<f32> =
+                tile.pixels().map(|(x, y)| window.look(x, y).center_error(false)).collect();
+            errors.lock().unwrap_or_else(PoisonError::into_inner).put(tile, own);
+        },
+    );
+    Picture {
+        colors: centers.into_values().into_iter().map(|sample| sample.color).collect(),
+        samples: vec![1; area.len()],
+        errors: errors.into_inner().unwrap_or_else(PoisonError::into_inner).into_values(),
+        outcome: Outcome::default(),
+        factor: 1.0,
+    }
+}
+
+/// What is kept of a pixel of a grid until its neighbours are known.
+#[derive(Clone, Copy, Debug, Default)]
+struct Cell {
+    color: Rgb,
+    error: f32,
+    /// The signature, if all samples share it; else a number of the pixel's own.
+    signature: u32,
+    alike: bool,
+}
+
+/// A grid of `side` × `side` rays through each pixel.
+pub(super) fn grid<S: Sampler>(crew: &Crew<S>, area: &Area, side: u32) -> Picture {
+    let places = |x: i64, y: i64, places: &mut Vec<DVec2>| {
+        places.extend(grid_places(DVec2::new(x as f64, y as f64), side));
+    };
+    even(crew, area, side * side, places, (grid_share(side), grid_unseen(side)))
+}
+
+/// `count` rays of a sequence through each pixel of a picture `width` pixels wide.
+pub(super) fn sequence<S: Sampler>(crew: &Crew<S>, area: &Area, width: u32, count: u32) -> Picture {
+    let places = |x: i64, y: i64, places: &mut Vec<DVec2>| {
+        let sequence = Sequence::of_pixel(y as u64 * u64::from(width) + x as u64, 1);
+        let corner = DVec2::new(x as f64, y as f64);
+        places.extend((0..count).map(|point| corner + sequence.place(point)));
+    };
+    even(crew, area, count, places, (bare_sequence_share(count), sequence_unseen(count)))
+}
+
+/// `count` rays through each pixel at the places that `pixel_places` adds to a list; they leave the shares `share` of their
+/// variance and, where they are alike, `unseen` of the contrast to the neighbours.
+fn even<S: Sampler>(
+    crew: &Crew<S>,
+    area: &Area,
+    count: u32,
+    pixel_places: impl Fn(i64, i64, &mut Vec<DVec2>) + Sync,
+    (share, unseen): (f32, f32),
+) -> Picture {
+    let cells = Mutex::new(Plane::new(*area, Cell::default()));
+    let (rays, count) = (count, count as usize);
+    let pixels_at_once = BATCH.div_ceil(count);
+    crew.run(
+        area,
+        true,
+        || false,
+        |sampler, scratch, tile| {
+            let mut own = vec![Cell::default(); tile.len()];
+            let pixels: Vec<(i64, i64)> = in_turn(tile).collect();
+            for some in pixels.chunks(pixels_at_once) {
+                scratch.places.clear();
+                scratch.samples.clear();
+                for (x, y) in some {
+                    pixel_places(*x, *y, &mut scratch.places);
+                }
+                sampler.sample(&scratch.places, &mut scratch.samples);
+                for ((x, y), samples) in some.iter().zip(scratch.samples.chunks(count)) {
+                    let mut spread = Spread::about(levels(samples[0].color));
+                    let mut sum = Rgb::ZERO;
+                    for sample in samples {
+                        sum += sample.color;
+                        spread.add(sample.color, sample.signature);
+                    }
+                    let only = spread.only_signature();
+                    own[tile.place_of(*x, *y)] = Cell {
+                        color: sum / count as f32,
+                        error: spread.error(share),
+                        signature: only.unwrap_or((x * 31 + y * 17) as u32),
+                        alike: only.is_some(),
+                    };
+                }
+            }
+            cells.lock().unwrap_or_else(PoisonError::into_inner).put(tile, own);
+        },
+    );
+    let cells = cells.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let errors = Mutex::new(Plane::new(*area, 0.0));
+    crew.run(
+        area,
+        false,
+        || false,
+        |_, _, tile| {
+            let window = Window::new(tile, |x, y| {
+                let cell = cells.nearest(x, y);
+                (cell.color, cell.signature)
+            });
+            let own: Vec<f32> = tile
+                .pixels()
+                .map(|(x, y)| {
+                    let (cell, look) = (cells.at(x, y), window.look(x, y));
+                    let hidden = cell.alike && look.suspect;
+                    cell.error + if hidden { unseen * look.contrast } else { 0.0 }
+                })
+                .collect();
+            errors.lock().unwrap_or_else(PoisonError::into_inner).put(tile, own);
+        },
+    );
+    Picture {
+        colors: cells.values().iter().map(|cell| cell.color).collect(),
+        samples: vec![rays; area.len()],
+        errors: errors.into_inner().unwrap_or_else(PoisonError::into_inner).into_values(),
+        outcome: Outcome::default(),
+        factor: 1.0,
+    }
+}

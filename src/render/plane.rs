@@ -1,0 +1,143 @@
+//! Rectangles of pixels, which may reach over the picture's edge, and what is known of each pixel in one.
+
+use crate::film::tiles;
+
+/// The side of a tile in pixels: small enough to share the work out evenly, large enough to cost nothing by itself.
+const TILE_SIDE: u32 = 16;
+
+/// A rectangle of pixels, half open, in columns and rows of the whole picture; those of its apron have -1 and width or height.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Area {
+    pub(super) x0: i64,
+    pub(super) y0: i64,
+    pub(super) x1: i64,
+    pub(super) y1: i64,
+}
+
+impl Area {
+    pub(super) fn width(&self) -> usize {
+        (self.x1 - self.x0) as usize
+    }
+
+    pub(super) fn height(&self) -> usize {
+        (self.y1 - self.y0) as usize
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.width() * self.height()
+    }
+
+    pub(super) fn contains(&self, x: i64, y: i64) -> bool {
+        (self.x0..self.x1).contains(&x) && (self.y0..self.y1).contains(&y)
+    }
+
+    /// The place of a pixel, counted row by row.
+    #[inline]
+    pub(super) fn place_of(&self, x: i64, y: i64) -> usize {
+        debug_assert!(self.contains(x, y), "({x}, {y}) in {self:?}");
+        (y - self.y0) as usize * self.width() + (x - self.x0) as usize
+    }
+
+    /// The pixel at a place counted row by row.
+    pub(super) fn pixel_at(&self, place: usize) -> (i64, i64) {
+        let width = self.width();
+        (self.x0 + (place % width) as i64, self.y0 + (place / width) as i64)
+    }
+
+    /// The area and `apron` pixels about it.
+    pub(super) fn grown(&self, apron: i64) -> Self {
+        Self { x0: self.x0 - apron, y0: self.y0 - apron, x1: self.x1 + apron, y1: self.y1 + apron }
+    }
+
+    /// The corners of the area's pixels, each named by the pixel to its lower right.
+    pub(super) fn corners(&self) -> Self {
+        Self { x1: self.x1 + 1, y1: self.y1 + 1, ..*self }
+    }
+
+    /// Tiles that cover the area without overlap, in an order that keeps neighbours together.
+    pub(super) fn tiles(&self) -> Vec<Self> {
+        let shift = |x0: u32, y0: u32| (self.x0 + i64::from(x0), self.y0 + i64::from(y0));
+        tiles(self.width() as u32, self.height() as u32, TILE_SIDE)
+            .into_iter()
+            .map(|tile| {
+                let ((x0, y0), (x1, y1)) = (shift(tile.x0, tile.y0), shift(tile.x1, tile.y1));
+                Self { x0, y0, x1, y1 }
+            })
+            .collect()
+    }
+
+    /// The pixels row by row.
+    pub(super) fn pixels(&self) -> impl Iterator<Item = (i64, i64)> + use<> {
+        let area = *self;
+        (area.y0..area.y1).flat_map(move |y| (area.x0..area.x1).map(move |x| (x, y)))
+    }
+}
+
+/// A value for each pixel of an area, row by row.
+#[derive(Clone, Debug)]
+pub(super) struct Plane<T> {
+    area: Area,
+    values: Vec<T>,
+}
+
+impl<T: Clone> Plane<T> {
+    pub(super) fn new(area: Area, value: T) -> Self {
+        Self { area, values: vec![value; area.len()] }
+    }
+}
+
+impl<T> Plane<T> {
+    pub(super) fn area(&self) -> &Area {
+        &self.area
+    }
+
+    #[inline]
+    pub(super) fn at(&self, x: i64, y: i64) -> &T {
+        &self.values[self.area.place_of(x, y)]
+    }
+
+    #[inline]
+    pub(super) fn at_mut(&mut self, x: i64, y: i64) -> &mut T {
+        let index = self.area.place_of(x, y);
+        &mut self.values[index]
+    }
+
+    /// The value of the pixel of the area that is nearest to a place in it or around.
+    #[inline]
+    pub(super) fn nearest(&self, x: i64, y: i64) -> &T {
+        self.at(x.clamp(self.area.x0, self.area.x1 - 1), y.clamp(self.area.y0, self.area.y1 - 1))
+    }
+
+    pub(super) fn values(&self) -> &[T] {
+        &self.values
+    }
+
+    pub(super) fn into_values(self) -> Vec<T> {
+        self.values
+    }
+
+    /// Moves the values of `tile`, row by row, into their places.
+    pub(super) fn put(&mut self, tile: &Area, values: impl IntoIterator<Item = T>) {
+        let mut values = values.into_iter();
+        for y in tile.y0..tile.y1 {
+            let start = self.area.place_of(tile.x0, y);
+            for (place, value) in
+                self.values[start..start + tile.width()].iter_mut().zip(values.by_ref())
+            {
+                *place = value;
+            }
+        }
+    }
+}
+
+impl<T: Default> Plane<T> {
+    /// Takes the values of `tile`, row by row, out of their places.
+    pub(super) fn take(&mut self, tile: &Area) -> Vec<T> {
+        let mut taken = Vec::with_capacity(tile.len());
+        for y in tile.y0..tile.y1 {
+            let start = self.area.place_of(tile.x0, y);
+            taken.extend(self.values[start..start + tile.width()].iter_mut().map(std::mem::take));
+        }
+        taken
+    }
+}
