@@ -72,6 +72,7 @@
 pub mod aa;
 pub mod accel;
 pub mod camera;
+pub mod classic;
 pub mod color;
 pub mod film;
 pub mod geometry;

@@ -35,6 +35,21 @@ pub struct Material {
 }
 
 impl Material {
+    /// A white surface that is opaque and gives back nothing: what others are made from.
+    pub fn none() -> Self {
+        Self {
+            texture: Texture::Solid(Rgb::ONE),
+            ambient: 0.0,
+            diffuse: 0.0,
+            specular: 0.0,
+            shininess: 1.0,
+            reflection: 0.0,
+            opacity: 1.0,
+            transmission: Rgb::ZERO,
+            ior: 1.0,
+        }
+    }
+
     /// Whether light passes through.
     pub fn is_transmissive(&self) -> bool {
         self.transmission != Rgb::ZERO

@@ -30,7 +30,7 @@ impl Tree {
         let (frame, inside) = (division.frame?, &division.inside);
         let kind = |k: u32| match &shapes[inside[k as usize] as usize] {
             Shape::Sphere(_) => Kind::Sphere,
-            Shape::Triangle(_) => Kind::Triangle,
+            Shape::Triangle(_) | Shape::Face(_) => Kind::Triangle,
             _ => Kind::Other,
         };
         let boxes = build::boxes(shapes, inside, &frame);
@@ -92,10 +92,12 @@ impl Leaves<'_> {
     fn triangles(&self, run: Run) -> Triangles {
         let mut block = Triangles::new(run.first);
         for shape in self.shapes_of(run) {
-            if let Shape::Triangle(t) = shape {
-                let corners = t.vertices().map(|v| self.frame.point(v));
-                block.push(corners, self.frame.coarseness());
-            }
+            let corners = match shape {
+                Shape::Triangle(t) => t.vertices(),
+                Shape::Face(f) => f.vertices(),
+                _ => continue,
+            };
+            block.push(corners.map(|v| self.frame.point(v)), self.frame.coarseness());
         }
         block
     }

@@ -4,8 +4,10 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::{Parser, Subcommand, ValueEnum};
+use glam::DVec3;
 use whitted::aa::AntiAliasing;
 use whitted::film::Tile;
+use whitted::scene::ModelPlace;
 use whitted::scene::generators::MOST_OBJECTS;
 
 use super::memory;
@@ -27,18 +29,47 @@ pub(crate) struct Args {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Render a scene to a picture
-    Render(RenderArgs),
+    Render(Box<RenderArgs>),
     /// Measure what accuracy costs: tables and plots of error against time
     Study(StudyArgs),
     /// Measure how far two pictures are apart
     Compare(CompareArgs),
-    /// List the built-in scenes
-    Scenes,
+    /// Show what a scene or model holds, what was repaired, what is missing
+    Inspect(InspectArgs),
+    /// List the built-in scenes, or show one
+    Scenes(ScenesArgs),
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct ScenesArgs {
+    /// Print this scene as TOML, to be changed and rendered
+    #[arg(long, value_name = "NAME", conflicts_with = "schema")]
+    pub(crate) show: Option<String>,
+
+    /// Print the JSON schema of the scene format, for editors
+    #[arg(long)]
+    pub(crate) schema: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct InspectArgs {
+    /// File to look at: .obj, .nff or .toml, or a built-in scene
+    #[arg(value_name = "FILE")]
+    pub(crate) file: PathBuf,
+
+    /// One JSON object on standard output instead of text
+    #[arg(long)]
+    pub(crate) json: bool,
+
+    /// What would be a warning is an error
+    #[arg(long)]
+    pub(crate) strict: bool,
 }
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct RenderArgs {
-    /// Built-in scene to render; `whitted scenes` lists them
+    /// Built-in scene, of which `whitted scenes` shows a list, or a file: .toml, .nff, or .obj
+    /// (a model, on a floor under two lights)
     #[arg(default_value = "assignment")]
     pub(crate) scene: String,
 
@@ -90,6 +121,37 @@ pub(crate) struct RenderArgs {
     /// Threads to render with, at most 4096 [default: one per core]
     #[arg(long, value_name = "N", value_parser = parse_threads, allow_negative_numbers = true)]
     pub(crate) threads: Option<NonZeroUsize>,
+
+    /// Model to add, standing at X,Y,Z on its lowest point, its largest side being SIZE; repeatable
+    /// [default: on the floor in front of the scene's middle, a fitting size]
+    #[arg(long = "obj", value_name = "FILE[@X,Y,Z][*SIZE]", value_parser = parse_model)]
+    pub(crate) models: Vec<ModelPlace>,
+
+    /// Where the camera is, in scene units [default: the scene's own]
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
+    pub(crate) eye: Option<DVec3>,
+
+    /// Point in the middle of the picture, in scene units [default: the scene's own]
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
+    pub(crate) look_at: Option<DVec3>,
+
+    /// Direction that is up, or x, y, z for an axis; a model alone also stands by it [default: the
+    /// scene's own; y for models]
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_direction, allow_hyphen_values = true)]
+    pub(crate) up: Option<DVec3>,
+
+    /// Vertical field of view in degrees, between 0 and 180 [default: the scene's own]
+    #[arg(long, value_name = "DEGREES", value_parser = parse_angle, allow_negative_numbers = true)]
+    pub(crate) fov: Option<f64>,
+
+    /// Shading rules: whitted, or classic (those that ray counts of the Standard Procedural Databases
+    /// are compared by: 513x513 rays through the corners of 512x512 pixels)
+    #[arg(long, value_name = "RULES", value_enum, default_value_t)]
+    pub(crate) rules: Rules,
+
+    /// What would be a warning is an error
+    #[arg(long)]
+    pub(crate) strict: bool,
 
     /// Statistics to write as JSON; - is standard output
     #[arg(long, value_name = "FILE")]
@@ -153,6 +215,15 @@ pub(crate) struct StudyArgs {
     /// Nothing on standard error but errors
     #[arg(short, long)]
     pub(crate) quiet: bool,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Rules {
+    /// Those of the assignment
+    #[default]
+    Whitted,
+    /// Those of the Standard Procedural Databases
+    Classic,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -251,6 +322,63 @@ fn parse_threads(text: &str) -> Result<NonZeroUsize, String> {
     }
 }
 
+/// A file name with numbers behind it; what is not numeric belongs to the name.
+fn parse_model(text: &str) -> Result<ModelPlace, String> {
+    let (mut name, mut size, mut at) = (text, None, None);
+    if let Some((rest, number)) = name.rsplit_once('*')
+        && let Ok(number) = number.parse::<f64>()
+    {
+        if !(number > 0.0 && number.is_finite()) {
+            return Err(format!("the size is {number}, but must be positive and finite"));
+        }
+        (name, size) = (rest, Some(number));
+    }
+    if let Some((rest, place)) = name.rsplit_once('@')
+        && let Ok(place) = parse_vector(place)
+    {
+        (name, at) = (rest, Some(place));
+    }
+    if name.is_empty() {
+        return Err("give a file, such as model.obj or model.obj@0,0,-80*5".to_owned());
+    }
+    Ok(ModelPlace { path: PathBuf::from(name), at, size })
+}
+
+fn parse_vector(text: &str) -> Result<DVec3, String> {
+    let numbers: Vec<f64> = text
+        .split(',')
+        .map(|part| part.trim().parse::<f64>().ok().filter(|x| x.is_finite()))
+        .collect::<Option<_>>()
+        .unwrap_or_default();
+    match numbers.as_slice() {
+        &[x, y, z] => Ok(DVec3::new(x, y, z)),
+        _ => Err("give three numbers, such as 1,2.5,-3".to_owned()),
+    }
+}
+
+fn parse_direction(text: &str) -> Result<DVec3, String> {
+    match text {
+        "x" | "+x" => Ok(DVec3::X),
+        "y" | "+y" => Ok(DVec3::Y),
+        "z" | "+z" => Ok(DVec3::Z),
+        "-x" => Ok(DVec3::NEG_X),
+        "-y" => Ok(DVec3::NEG_Y),
+        "-z" => Ok(DVec3::NEG_Z),
+        _ => match parse_vector(text) {
+            Ok(vector) if vector != DVec3::ZERO => Ok(vector),
+            Ok(_) => Err("the zero vector points nowhere".to_owned()),
+            Err(_) => Err("give x, y, z, -x, -y, -z or three numbers, such as 0,0,1".to_owned()),
+        },
+    }
+}
+
+fn parse_angle(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(degrees) if degrees > 0.0 && degrees < 180.0 => Ok(degrees),
+        _ => Err("give an angle in degrees, between 0 and 180".to_owned()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -285,6 +413,39 @@ mod tests {
         assert_eq!(error, "needs 204.9 GiB of memory; choose a size that needs at most 16.0 GiB");
         let error = parse_size("99999999999999999999x1").expect_err("too large");
         assert!(error.starts_with("needs more than 88.0 GiB"), "{error}");
+    }
+
+    #[test]
+    fn models_are_read_from_the_right() {
+        let model = |text: &str| {
+            let place = parse_model(text).expect(text);
+            (place.path.display().to_string(), place.at.map(|v| v.to_array()), place.size)
+        };
+        assert_eq!(model("a.obj"), ("a.obj".to_owned(), None, None));
+        assert_eq!(
+            model("a.obj@1,-2,3e1*4"),
+            ("a.obj".to_owned(), Some([1.0, -2.0, 30.0]), Some(4.0))
+        );
+        assert_eq!(model("a*b@c.obj*.5"), ("a*b@c.obj".to_owned(), None, Some(0.5)));
+        assert_eq!(model("a@1,2,3@4,5,6"), ("a@1,2,3".to_owned(), Some([4.0, 5.0, 6.0]), None));
+        assert_eq!(model("a*2@1,2,3"), ("a*2".to_owned(), Some([1.0, 2.0, 3.0]), None));
+        assert_eq!(model("a@1,2.obj"), ("a@1,2.obj".to_owned(), None, None));
+        for text in ["", "*2", "@1,2,3", "a*0", "a*-1", "a*inf"] {
+            assert!(parse_model(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn directions_are_axes_or_vectors() {
+        assert_eq!(parse_direction("z"), Ok(DVec3::Z));
+        assert_eq!(parse_direction("-y"), Ok(DVec3::NEG_Y));
+        assert_eq!(parse_direction("0, 1,-2"), Ok(DVec3::new(0.0, 1.0, -2.0)));
+        for text in ["", "w", "0,0,0", "1,2", "1,2,3,4", "1,2,nan"] {
+            assert!(parse_direction(text).is_err(), "{text}");
+        }
+        assert!(
+            parse_angle("0").is_err() && parse_angle("180").is_err() && parse_angle("x").is_err()
+        );
     }
 
     #[test]

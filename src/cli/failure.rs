@@ -1,11 +1,14 @@
 //! What ends a command early: one line for the user, an exit code for scripts.
 
-use std::fmt::{self, Write};
+use std::fmt;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
 use whitted::film::ImageError;
-use whitted::scene::SceneError;
+use whitted::scene::obj::ModelError;
+use whitted::scene::{SceneError, Warning};
+
+use super::streams;
 
 /// The exit codes for what went wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +19,8 @@ enum Exit {
     Usage = 2,
     /// The scene or a model is invalid.
     Scene = 3,
+    /// What would be a warning is an error, as the user wished.
+    Strict = 4,
     /// Two pictures differ by more than they may.
     OverLimit = 6,
 }
@@ -53,9 +58,37 @@ impl Failure {
         Self::usage(anyhow::Error::msg(one_line(&error.to_string(), hint)))
     }
 
+    /// Warnings that the user wants to be errors.
+    fn strict(warnings: &[Warning]) -> Self {
+        let lines: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+        Self { exit: Exit::Strict, error: anyhow::Error::msg(lines.join("; ")) }
+    }
+
     pub(crate) fn exit_code(&self) -> ExitCode {
         ExitCode::from(self.exit as u8)
     }
+}
+
+/// Tells the user of `warnings`, or fails for them.
+pub(crate) fn warn(warnings: &[Warning], strict: bool, quiet: bool) -> Result<(), Failure> {
+    if strict && !warnings.is_empty() {
+        return Err(Failure::strict(warnings));
+    }
+    if !quiet {
+        for warning in warnings {
+            streams::note(&escaped(&format!("warning: {warning}")));
+        }
+    }
+    Ok(())
+}
+
+/// A file name may hold anything, and a message is to stay on its line.
+fn escaped(text: &str) -> String {
+    let letters = text.trim_end().chars();
+    let escape = |letter: char| {
+        if letter.is_control() { letter.escape_debug().to_string() } else { letter.to_string() }
+    };
+    letters.map(escape).collect()
 }
 
 /// Whatever has no better code, such as a render that failed.
@@ -64,10 +97,16 @@ impl<E: Into<anyhow::Error>> From<E> for Failure {
         let error = error.into();
         let exit = match (error.downcast_ref::<ImageError>(), error.downcast_ref::<SceneError>()) {
             (Some(ImageError::UnknownExtension { .. }), _)
-            | (_, Some(SceneError::UnknownScene { .. } | SceneError::NotGenerated { .. })) => {
-                Exit::Usage
-            }
+            | (
+                _,
+                Some(
+                    SceneError::UnknownScene { .. }
+                    | SceneError::UnknownFile { .. }
+                    | SceneError::NotGenerated { .. },
+                ),
+            ) => Exit::Usage,
             (_, Some(_)) => Exit::Scene,
+            _ if error.is::<ModelError>() => Exit::Scene,
             _ => Exit::Failed,
         };
         Self { exit, error }
@@ -83,15 +122,11 @@ impl fmt::Display for Failure {
                 text = format!("{text}: {cause}");
             }
         }
-        // A file name may hold anything, and the message is to stay on its line.
-        for letter in text.trim_end().chars() {
-            if letter.is_control() {
-                write!(f, "{}", letter.escape_debug())?;
-            } else {
-                f.write_char(letter)?;
-            }
+        // Faults of a scene file show its lines; they come with their control characters replaced.
+        if let Some(SceneError::Invalid(_)) = self.error.downcast_ref::<SceneError>() {
+            return f.write_str(&text);
         }
-        Ok(())
+        f.write_str(&escaped(&text))
     }
 }
 

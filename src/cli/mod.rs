@@ -3,6 +3,7 @@
 mod args;
 mod compare;
 mod failure;
+mod inspect;
 mod memory;
 mod progress;
 mod render;
@@ -27,7 +28,8 @@ pub(crate) fn run() -> ExitCode {
             Command::Render(args) => render::run(args, started),
             Command::Compare(args) => compare::run(args),
             Command::Study(args) => study::run(args),
-            Command::Scenes => scenes::run(),
+            Command::Inspect(args) => inspect::run(args),
+            Command::Scenes(args) => scenes::run(args),
         },
         Err(error) if error.use_stderr() => Err(Failure::from_clap(&error)),
         Err(help_or_version) => streams::write_stdout(help_or_version.to_string().as_bytes()),

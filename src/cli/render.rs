@@ -7,13 +7,14 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, anyhow};
 use image::RgbImage;
 use whitted::aa::AntiAliasing;
+use whitted::classic::{CLASSIC_SIZE, render_classic};
 use whitted::film::metrics::read_png_rgb8;
 use whitted::film::{Difference, FileError, Film, OutputFile, WholeFile, encode};
-use whitted::render::{Goal, RenderOptions, Rendering};
-use whitted::scene::{Scene, load_builtin_of};
+use whitted::render::{Goal, RayCounts, RenderOptions, Rendering};
+use whitted::scene::{LoadOptions, Loaded, Scene};
 
-use super::args::{ProgressMode, RenderArgs};
-use super::failure::Failure;
+use super::args::{ProgressMode, RenderArgs, Rules};
+use super::failure::{Failure, warn};
 use super::progress::Reporter;
 use super::stats::{Seconds, Statistics};
 use super::{memory, streams};
@@ -27,8 +28,22 @@ const MOST_RAYS_FOR_GOAL: u32 = 1024;
 
 /// Renders as `args` say; `started` is when the program did.
 pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
+    if args.rules == Rules::Classic {
+        check_classic(args)?;
+    }
     let loading = Instant::now();
-    let scene = load_builtin_of(&args.scene, args.objects)?;
+    let is_classic = args.rules == Rules::Classic;
+    let load_options = LoadOptions {
+        models: args.models.clone(),
+        eye: args.eye,
+        look_at: args.look_at,
+        up: args.up,
+        fov: args.fov,
+        objects: args.objects,
+        rows: is_classic.then_some(CLASSIC_SIZE),
+    };
+    let Loaded { scene, warnings: odd } = whitted::scene::load(&args.scene, &load_options)?;
+    warn(&odd, args.strict, args.quiet)?;
     let build = scene.bvh_stats().build_seconds;
     let load = (loading.elapsed().as_secs_f64() - build).max(0.0);
 
@@ -43,7 +58,11 @@ pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
     let rendering = {
         let mode = if args.quiet { ProgressMode::None } else { args.progress };
         let reporter = Reporter::new(mode);
-        whitted::render::render(&scene, &options, &|progress| reporter.report(&progress))?
+        if is_classic {
+            render_classic(&scene, args.threads)?
+        } else {
+            whitted::render::render(&scene, &options, &|progress| reporter.report(&progress))?
+        }
     };
 
     let measured = reference.map(|reference| measure(&rendering.film, &reference)).transpose()?;
@@ -64,8 +83,33 @@ pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
             streams::note(&format!("warning: {warning}"));
         }
         streams::note(&summary(&name, options.aa, &rendering, measured, total));
+        if is_classic {
+            let RayCounts { camera_hit, reflected, refracted, shadow, .. } = rendering.rays;
+            streams::note(&format!(
+                "classic rules: {camera_hit} eye rays that hit, {reflected} reflected, {refracted} \
+                 refracted, {shadow} shadow"
+            ));
+        }
     }
     Ok(())
+}
+
+/// The classical rules leave no choice in these.
+fn check_classic(args: &RenderArgs) -> Result<(), Failure> {
+    let chosen = [
+        ("--size", args.size.is_some()),
+        ("--aa", args.aa.is_some()),
+        ("--depth", args.depth.is_some()),
+        ("--crop", args.crop.is_some()),
+        ("--max-error", args.max_error.is_some()),
+        ("--time-limit", args.time_limit.is_some()),
+    ];
+    match chosen.iter().find(|(_, is_given)| *is_given) {
+        None => Ok(()),
+        Some((flag, _)) => Err(Failure::usage(anyhow!(
+            "--rules classic has its own size, rays and depth; leave out {flag}"
+        ))),
+    }
 }
 
 /// What the flags ask for.
@@ -79,7 +123,7 @@ fn options(args: &RenderArgs, scene: &Scene, started: Instant) -> Result<RenderO
         (None, None) => Goal::Mode,
     };
     let aa = match (args.aa, goal) {
-        (None, Goal::Mode) => AntiAliasing::default(),
+        (None, Goal::Mode) => scene.aa().unwrap_or_default(),
         (None, _) => AntiAliasing::Adaptive { error: 0.0, most: MOST_RAYS_FOR_GOAL },
         (Some(aa @ AntiAliasing::Adaptive { .. }), _) | (Some(aa), Goal::Mode) => aa,
         (Some(aa), _) => {

@@ -26,7 +26,7 @@
 //! the last component of its code; then n is not a unit vector and does not turn with the point. At the apex, where
 //! there is no normal, the axis is taken.
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use super::{
     Bounds, Ends, Similarity,
@@ -50,6 +50,8 @@ pub struct Cone {
     frame: Frame,
     height: f64,
     radius: f64,
+    /// How far below the apex the cone begins: 0, unless it is truncated.
+    cut: f64,
     ends: Ends,
 }
 
@@ -77,7 +79,36 @@ impl Cone {
     pub fn try_new(base: DVec3, apex: DVec3, radius: f64, ends: Ends) -> Result<Self, ShapeError> {
         ShapeError::check_length("radius", radius)?;
         let (axis, height) = ShapeError::check_axis(("base", base), ("apex", apex))?;
-        Ok(Self { base, apex, frame: Frame::around(axis), height, radius, ends })
+        Ok(Self { base, apex, frame: Frame::around(axis), height, radius, cut: 0.0, ends })
+    }
+
+    /// The open side of a truncated cone, with these radii about `base` and `top`, either of which may be the larger.
+    ///
+    /// The missing tip may be far away: where the radii agree to n digits, the ends are placed with n digits less, so
+    /// nearly equal radii are better made a cylinder.
+    ///
+    /// # Errors
+    /// Radii that are not positive, finite and different, or ends that are not finite or not apart, or an apex beyond all
+    /// numbers.
+    pub fn truncated(
+        base: DVec3,
+        top: DVec3,
+        base_radius: f64,
+        top_radius: f64,
+    ) -> Result<Self, ShapeError> {
+        ShapeError::check_length("base_radius", base_radius)?;
+        ShapeError::check_length("top_radius", top_radius)?;
+        if top_radius > base_radius {
+            return Self::truncated(top, base, top_radius, base_radius);
+        }
+        let (axis, part) = ShapeError::check_axis(("base", base), ("top", top))?;
+        let narrowing = base_radius - top_radius;
+        ShapeError::check_length("difference of the radii", narrowing)?;
+        let height = part * (base_radius / narrowing);
+        let apex = base + axis * height;
+        ShapeError::check_point("apex", apex)?;
+        let (frame, cut) = (Frame::around(axis), part * (top_radius / narrowing));
+        Ok(Self { base, apex, frame, height, radius: base_radius, cut, ends: Ends::Open })
     }
 
     /// The middle of the base, and the apex.
@@ -97,7 +128,9 @@ impl Cone {
 
     pub(crate) fn bounds(&self) -> Bounds {
         let reach = disc_reach(self.frame.axis()) * self.radius;
-        Bounds::of_points([self.base - reach, self.base + reach, self.apex])
+        let upper = reach * (self.cut / self.height);
+        let top = self.apex - self.frame.axis() * self.cut;
+        Bounds::of_points([self.base - reach, self.base + reach, top - upper, top + upper])
     }
 
     pub(crate) fn mapped(&self, map: &Similarity) -> Self {
@@ -106,6 +139,7 @@ impl Cone {
             apex: map.point(self.apex),
             height: map.length(self.height),
             radius: map.length(self.radius),
+            cut: map.length(self.cut),
             ..*self
         }
     }
@@ -166,7 +200,7 @@ impl Cone {
 
     #[inline(always)]
     fn on_side(&self, root: Root) -> Crossing {
-        if root.y <= 0.0 && root.y >= -self.radius * self.height {
+        if root.y <= -self.radius * self.cut && root.y >= -self.radius * self.height {
             Crossing::at(root.t)
         } else {
             Crossing::NONE
@@ -254,7 +288,7 @@ impl Cone {
         let point = self.apex + self.frame.to_world(q);
         let normal = self.frame.to_world(normal);
         let error = Surface::error_bound(normal, point.abs() + self.radius + self.height);
-        Surface { point, point_rest: DVec3::ZERO, normal, local: q, error, uv: DVec2::ZERO }
+        Surface { local: q, ..Surface::plain(point, normal, error) }
     }
 
     /// The point of the side nearest to `q`.

@@ -10,7 +10,7 @@
 //! **Normal.** The gradient of x² + z² − r² is (2x, 0, 2z): n = (x, 0, z)/r, or n = (sin a, 0, cos a) at the angle a.
 //! It is the cone's normal (sin a cos t, sin t, cos a cos t) for a slope of t = 0.
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use super::{
     Bounds, Ends, Similarity,
@@ -189,7 +189,7 @@ impl Cylinder {
         let point = self.base + self.frame.to_world(q);
         let normal = self.frame.to_world(normal);
         let error = Surface::error_bound(normal, point.abs() + self.radius + self.height);
-        Surface { point, point_rest: DVec3::ZERO, normal, local: q, error, uv: DVec2::ZERO }
+        Surface { local: q, ..Surface::plain(point, normal, error) }
     }
 }
 

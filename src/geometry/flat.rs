@@ -63,6 +63,16 @@ fn permuted(v: DVec3, axis: u8) -> DVec3 {
 /// A ray in the plane is a miss: a closed surface has other faces to be hit there.
 #[inline(always)]
 pub(super) fn crossing(vertices: &[DVec3], normal: DVec3, ray: &Ray) -> Crossing {
+    crossing_of(vertices, || normal, ray)
+}
+
+/// As [`crossing`], for a shape that makes its normal, of any length, only when the ray is known to pass the edges.
+#[inline(always)]
+pub(super) fn crossing_of(
+    vertices: &[DVec3],
+    normal: impl FnOnce() -> DVec3,
+    ray: &Ray,
+) -> Crossing {
     let shear = Shear::along(ray.dir);
     let seen = |v: &DVec3| shear.project(*v - ray.origin);
     let mut last = seen(&vertices[vertices.len() - 1]);
@@ -77,6 +87,7 @@ pub(super) fn crossing(vertices: &[DVec3], normal: DVec3, ray: &Ray) -> Crossing
     if left == right {
         return Crossing::NONE; // on different sides of two edges, or the outline is seen edge-on
     }
+    let normal = normal();
     let t = dot(normal, vertices[0] - ray.origin) / dot(normal, ray.dir);
     if t.is_finite() { Crossing::at(t) } else { Crossing::NONE }
 }
@@ -94,7 +105,7 @@ pub(super) fn surface(vertex: DVec3, normal: DVec3, ray: &Ray, t: f64, rest: DVe
     let (point, point_rest) = sum(near, near_rest - back);
     let local = point - vertex;
     let error = Surface::error_bound(normal, point.abs() + local.abs());
-    Surface { point, point_rest, normal, local, error, uv: DVec2::ZERO }
+    Surface { point_rest, local, ..Surface::plain(point, normal, error) }
 }
 
 /// The rounded sum and its rounding error.

@@ -1,6 +1,6 @@
 //! What a ray finds: crossings of one shape, the nearest hit, and the surface there.
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3};
 
 use super::ray::{Departure, Ray};
 use crate::math::UNIT_ROUNDOFF;
@@ -64,11 +64,25 @@ pub struct Surface {
     pub local: DVec3,
     /// How far `point` may be from the true surface along `normal`.
     pub error: f64,
-    /// Surface coordinates from the lower left, for shapes that have them (sphere and quad); else zero.
+    /// Surface coordinates from the lower left, for shapes that have them (sphere, quad, and a mesh that has some); else
+    /// zero.
     pub uv: DVec2,
+    /// The unit normal that light is bent by: `normal`, or that interpolated between the corners of a mesh. It has no
+    /// say in which side of the surface a ray is on.
+    pub shading: DVec3,
+    /// What multiplies the material's colour, channel by channel: 1, or the tint of a mesh.
+    pub tint: Vec3,
 }
 
 impl Surface {
+    /// A point of a surface without coordinates of its own, shaded by its own normal.
+    #[inline(always)]
+    pub(crate) fn plain(point: DVec3, normal: DVec3, error: f64) -> Self {
+        let (local, uv) = (point, DVec2::ZERO);
+        let (shading, point_rest) = (normal, DVec3::ZERO);
+        Self { point, point_rest, normal, local, error, uv, shading, tint: Vec3::ONE }
+    }
+
     /// A bound of the distance along `normal` between a surface and a computed point on it, which lies within
     /// `lengths` (componentwise) of what it was computed from.
     ///

@@ -4,7 +4,7 @@ use glam::DVec3;
 use thiserror::Error;
 
 use super::{
-    Bounds, Cone, Cylinder, Polygon, Quad, Similarity, Sphere, Triangle,
+    Bounds, Cone, Cylinder, Face, Polygon, Quad, Similarity, Sphere, Triangle,
     hit::{Crossing, Crossings, Hit, NO_CROSSINGS, Surface, first_ahead},
     ray::{Departure, Ray},
 };
@@ -26,6 +26,8 @@ pub enum Shape {
     Triangle(Box<Triangle>),
     /// A convex polygon.
     Polygon(Box<Polygon>),
+    /// A triangle of a mesh.
+    Face(Face),
 }
 
 /// Why a shape cannot be made.
@@ -122,6 +124,7 @@ impl Shape {
             Self::Quad(s) => s.bounds(),
             Self::Triangle(s) => s.bounds(),
             Self::Polygon(s) => s.bounds(),
+            Self::Face(s) => s.bounds(),
         }
     }
 
@@ -135,6 +138,7 @@ impl Shape {
             Self::Quad(s) => s.mapped(map).into(),
             Self::Triangle(s) => s.mapped(map).into(),
             Self::Polygon(s) => s.mapped(map).into(),
+            Self::Face(s) => s.mapped(map).into(),
         }
     }
 
@@ -148,6 +152,7 @@ impl Shape {
             Self::Quad(s) => s.crossings(ray),
             Self::Triangle(s) => s.crossings(ray),
             Self::Polygon(s) => s.crossings(ray),
+            Self::Face(s) => s.crossings(ray),
         }
     }
 
@@ -161,7 +166,7 @@ impl Shape {
             Self::Sphere(_) => Sphere::crossings_from(ray, from),
             Self::Cylinder(s) => s.crossings_from(ray, from),
             Self::Cone(s) => s.crossings_from(ray, from),
-            Self::Quad(_) | Self::Triangle(_) | Self::Polygon(_) => NO_CROSSINGS,
+            Self::Quad(_) | Self::Triangle(_) | Self::Polygon(_) | Self::Face(_) => NO_CROSSINGS,
         }
     }
 
@@ -196,6 +201,7 @@ impl Shape {
             Self::Quad(s) => s.surface(ray, hit.t, rest),
             Self::Triangle(s) => s.surface(ray, hit.t, rest),
             Self::Polygon(s) => s.surface(ray, hit.t, rest),
+            Self::Face(s) => s.surface(ray, hit.t, rest),
         }
     }
 
@@ -212,7 +218,20 @@ impl Shape {
 
     /// Whether [`Surface::uv`] means anything on this shape.
     pub fn has_uv(&self) -> bool {
-        matches!(self, Self::Sphere(_) | Self::Quad(_))
+        match self {
+            Self::Sphere(_) | Self::Quad(_) => true,
+            Self::Face(s) => s.has_uv(),
+            _ => false,
+        }
+    }
+
+    /// Where a shadow ray from `surface` should start, measured from the flat point: see [`Face::shadow_offset`].
+    #[inline]
+    pub(crate) fn shadow_offset(&self, surface: &Surface, inward: bool) -> DVec3 {
+        match self {
+            Self::Face(s) => s.shadow_offset(surface, inward),
+            _ => DVec3::ZERO,
+        }
     }
 
     /// Calls `visit` with every point that defines the shape, whose coordinates a change of origin must carry.
@@ -224,6 +243,7 @@ impl Shape {
             Self::Quad(s) => s.vertices().into_iter().for_each(visit),
             Self::Triangle(s) => s.vertices().into_iter().for_each(visit),
             Self::Polygon(s) => s.vertices().iter().copied().for_each(visit),
+            Self::Face(s) => s.vertices().into_iter().for_each(visit),
         }
     }
 
@@ -252,4 +272,4 @@ macro_rules! into_shape {
         }
     )* };
 }
-into_shape!(Sphere, Cylinder, Cone, Quad, Triangle, Polygon);
+into_shape!(Sphere, Cylinder, Cone, Quad, Triangle, Polygon, Face);

@@ -92,6 +92,6 @@ impl Sphere {
         let point = self.center + local;
         let error = Surface::error_bound(normal, point.abs() + self.radius);
         let uv = DVec2::new(normal.x, normal.y) * 0.5 + 0.5;
-        Surface { point, point_rest: DVec3::ZERO, normal, local, error, uv }
+        Surface { local, uv, ..Surface::plain(point, normal, error) }
     }
 }

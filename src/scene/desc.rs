@@ -17,6 +17,12 @@ pub struct SceneDesc {
     pub depth: u32,
     /// The colour of a ray that hits nothing.
     pub background: [f64; 3],
+    /// Anti-aliasing as `--aa` takes it, unless that is given.
+    #[serde(default)]
+    pub aa: Option<String>,
+    /// What the colours are.
+    #[serde(default)]
+    pub color_space: ColorSpace,
     /// The camera.
     pub camera: CameraDesc,
     /// The lights.
@@ -31,6 +37,44 @@ pub struct SceneDesc {
     /// The objects.
     #[serde(default)]
     pub object: Vec<ObjectDesc>,
+    /// Models from OBJ files.
+    #[serde(default)]
+    pub model: Vec<ModelDesc>,
+}
+
+/// What the three channels of a colour in a description are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ColorSpace {
+    /// Values as a display takes them.
+    #[default]
+    Srgb,
+    /// Linear light.
+    Linear,
+}
+
+/// A model from an OBJ file: scaled, then turned, then moved.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModelDesc {
+    /// The file, beside that of the scene.
+    pub file: String,
+    /// What its lengths are multiplied by.
+    #[serde(default = "one")]
+    pub scale: f64,
+    /// Turns about x, then y, then z, in degrees.
+    #[serde(default)]
+    pub rotate: [f64; 3],
+    /// How far it is moved then.
+    #[serde(default)]
+    pub translate: [f64; 3],
+    /// The name of a material in place of the model's own.
+    #[serde(default)]
+    pub material: Option<String>,
+}
+
+fn one() -> f64 {
+    1.0
 }
 
 /// A pinhole camera.
@@ -177,6 +221,17 @@ pub enum ShapeDesc {
         /// Whether a disc closes it.
         ends: EndsDesc,
     },
+    /// The open side of a truncated circular cone.
+    Frustum {
+        /// The middle of one end.
+        base: [f64; 3],
+        /// The middle of the other.
+        top: [f64; 3],
+        /// The radius at the base.
+        base_radius: f64,
+        /// The radius at the top.
+        top_radius: f64,
+    },
     /// A parallelogram, its front where the cross product of the edges points.
     Quad {
         /// A corner, where the surface coordinates are (0, 0).
@@ -189,7 +244,7 @@ pub enum ShapeDesc {
         /// Its corners, counterclockwise seen from the front.
         vertices: [[f64; 3]; 3],
     },
-    /// A convex polygon.
+    /// A flat polygon, convex or not.
     Polygon {
         /// Its corners, counterclockwise seen from the front.
         vertices: Vec<[f64; 3]>,

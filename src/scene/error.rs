@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use super::{format::Faults, nff::NffError, obj::ModelError, text::TextError};
 use crate::{camera::CameraError, geometry::ShapeError, texture::ImageTextureError};
 
 /// Why there is no scene to render.
@@ -32,6 +33,58 @@ pub enum SceneError {
         /// What is wrong, with line and column.
         source: Box<toml::de::Error>,
     },
+    /// The argument is neither a built-in scene nor a file of a known kind.
+    #[error("unknown scene `{name}`: no built-in scene ({known}), and no .toml, .nff or .obj file")]
+    UnknownFile {
+        /// What was asked for.
+        name: String,
+        /// The built-in scenes.
+        known: String,
+    },
+    /// A model cannot be used.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// A scene's text is wrong in one or more places.
+    #[error(transparent)]
+    Invalid(#[from] Faults),
+    /// A scene's file is not read at all.
+    #[error("{path}: {source}")]
+    Text {
+        /// The file.
+        path: String,
+        /// The reason.
+        source: TextError,
+    },
+    /// The anti-aliasing of a scene is not understood.
+    #[error("`aa` is `{mode}`, which is not understood: {reason}")]
+    Aa {
+        /// What it is.
+        mode: String,
+        /// Why it is not understood.
+        reason: String,
+    },
+    /// A model is named where there are no files.
+    #[error("model `{name}` is named by a scene that is not a file")]
+    ModelWithoutFile {
+        /// The model's file.
+        name: String,
+    },
+    /// A file that a scene names is missing.
+    #[error("{what} `{name}` is missing in {folder}")]
+    NoFile {
+        /// What it should be.
+        what: &'static str,
+        /// Its name.
+        name: String,
+        /// Where it was looked for.
+        folder: String,
+    },
+    /// There is nothing to see.
+    #[error("the scene is empty")]
+    Empty,
+    /// An NFF file is not a scene.
+    #[error(transparent)]
+    Nff(#[from] NffError),
     /// An object uses a material that is not defined.
     #[error("object {object} uses material `{material}`, which is not defined (known: {known})")]
     UnknownMaterial {

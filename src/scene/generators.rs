@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Scene, SceneError, builtin, load::Parts};
+use super::{SceneError, builtin, parts::Parts};
 use crate::{
     geometry::{Shape, Sphere},
     math::random::SplitMix64,
@@ -52,7 +52,7 @@ pub fn stress_spheres(count: u32) -> impl Iterator<Item = StressSphere> {
 ///
 /// # Errors
 /// The number of spheres is zero or above [`MOST_OBJECTS`].
-pub fn spheres(count: u32) -> Result<Scene, SceneError> {
+pub fn spheres(count: u32) -> Result<Parts, SceneError> {
     if !(1..=MOST_OBJECTS).contains(&count) {
         return Err(SceneError::Value {
             place: "scene `spheres`".to_owned(),
@@ -85,7 +85,7 @@ pub fn spheres(count: u32) -> Result<Scene, SceneError> {
         parts.shapes.push(Shape::from(shape));
         parts.material_of.push(numbers[usize::from(sphere.material)]);
     }
-    Scene::assemble(builtin::SPHERES.name, &desc, parts)
+    Ok(parts)
 }
 
 #[cfg(test)]
@@ -125,7 +125,7 @@ mod tests {
     /// Oracle: the first two spheres as published, and weights that only their material has.
     #[test]
     fn a_scene_holds_the_floor_and_the_spheres_in_order() {
-        let scene = spheres(100).expect("a scene");
+        let scene = crate::scene::load_builtin_of("spheres", Some(100)).expect("a scene");
         assert_eq!(
             (scene.name(), scene.primitive_count(), scene.light_count()),
             ("spheres", 101, 2)

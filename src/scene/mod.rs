@@ -7,27 +7,39 @@
 pub mod builtin;
 pub mod desc;
 pub mod error;
+pub mod format;
 pub mod generators;
 pub mod load;
+pub mod nff;
+pub mod obj;
+pub mod open;
+mod parts;
+mod stage;
 #[cfg(test)]
 mod tests;
+pub mod text;
+mod warning;
 
-use std::{ops::ControlFlow, time::Instant};
+use std::{ops::ControlFlow, sync::Arc, time::Instant};
 
 pub use self::{
     builtin::{Builtin, builtins, load_builtin, load_builtin_of},
     desc::SceneDesc,
     error::SceneError,
+    open::{LoadOptions, Loaded, ModelPlace, load},
+    parts::{CameraPlan, MeshPart, Parts},
+    warning::Warning,
 };
 use crate::{
+    aa::AntiAliasing,
     accel::Accel,
     camera::Camera,
     color::Rgb,
-    geometry::{Bounds, Hit, Ray, Shape, Similarity, Surface},
+    geometry::{Hit, Ray, Shape, Similarity, Surface},
     light::Light,
     material::Material,
 };
-use load::{ImageSource, Parts};
+use load::ImageSource;
 
 /// A scene, ready to trace.
 #[derive(Debug)]
@@ -37,6 +49,7 @@ pub struct Scene {
     depth: u32,
     map: Similarity,
     // The rest is in the scene's own coordinates.
+    aa: Option<AntiAliasing>,
     camera: Camera,
     background: Rgb,
     lights: Vec<Light>,
@@ -67,46 +80,38 @@ impl Scene {
         desc: &SceneDesc,
         images: &mut ImageSource,
     ) -> Result<Self, SceneError> {
-        let parts = Parts::try_new(desc, images)?;
-        Self::assemble(name, desc, parts)
+        Self::assemble(name, Parts::try_new(desc, images)?)
     }
 
-    /// The scene of `parts`; resolution, depth and camera are those of the description.
-    fn assemble(name: &str, desc: &SceneDesc, parts: Parts) -> Result<Self, SceneError> {
-        for (parameter, value) in
-            [("resolution", desc.resolution[0].min(desc.resolution[1])), ("depth", desc.depth)]
-        {
-            if value == 0 {
-                let place = "scene".to_owned();
-                return Err(SceneError::Value {
-                    place,
-                    name: parameter,
-                    value: 0.0,
-                    range: "at least 1",
-                });
-            }
-        }
-        let desc_camera = &desc.camera;
-        let [eye, look_at, up] =
-            [desc_camera.eye, desc_camera.look_at, desc_camera.up].map(glam::DVec3::from_array);
-        let camera = Camera::try_new(eye, look_at, up, desc_camera.vertical_fov)?;
-        let Parts { shapes, material_of, materials, lights, background } = parts;
-
-        let bounds = shapes.iter().fold(Bounds::EMPTY, |b, s| b.union(s.bounds()));
+    /// The scene of checked parts.
+    ///
+    /// # Errors
+    /// A camera that sees nothing.
+    pub fn assemble(name: &str, parts: Parts) -> Result<Self, SceneError> {
+        let camera = parts.camera.camera()?;
+        let bounds = parts.bounds();
         let mut points = Vec::new();
-        for shape in &shapes {
+        for shape in &parts.shapes {
             shape.for_each_point(|p| points.push(p));
         }
-        let map = Similarity::normalizing(&bounds, points.into_iter());
-        let shapes = shapes.iter().map(|shape| shape.mapped(&map)).collect();
+        let on_meshes = parts.meshes.iter().flat_map(|part| part.mesh.vertices());
+        let map = Similarity::normalizing(&bounds, points.into_iter().chain(on_meshes.copied()));
+        let Parts { resolution, depth, shapes, mut material_of, materials, lights, .. } = parts;
+        let mut shapes: Vec<Shape> = shapes.iter().map(|shape| shape.mapped(&map)).collect();
+        for MeshPart { mesh, material_of: of_faces } in parts.meshes {
+            let mesh = Arc::new(mesh.mapped(&map));
+            shapes.extend(mesh.faces().map(Shape::from));
+            material_of.extend(of_faces);
+        }
         let building = Instant::now();
         let accel = Accel::build(shapes);
         Ok(Self {
             name: name.to_owned(),
-            resolution: desc.resolution,
-            depth: desc.depth,
+            resolution,
+            depth,
+            aa: parts.aa,
             camera: camera.mapped(&map),
-            background,
+            background: parts.background,
             lights: lights
                 .iter()
                 .map(|l| Light { position: map.point(l.position), ..*l })
@@ -132,6 +137,11 @@ impl Scene {
     /// The deepest level of recursion, unless the user wants another.
     pub fn depth(&self) -> u32 {
         self.depth
+    }
+
+    /// How pixels are sampled, if the scene says it and the user does not.
+    pub fn aa(&self) -> Option<AntiAliasing> {
+        self.aa
     }
 
     /// The number of primitives.

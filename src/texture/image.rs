@@ -1,6 +1,6 @@
 //! Pictures as textures: decoded to linear light when they are loaded, bilinear between texels.
 
-use std::io::Cursor;
+use std::{io::Cursor, sync::OnceLock};
 
 use glam::DVec2;
 use thiserror::Error;
@@ -9,14 +9,24 @@ use crate::color::{Rgb, srgb_to_linear};
 
 /// The longest side and the largest number of texels of a texture that is accepted.
 const LARGEST_SIDE: u32 = 1 << 15;
-const LARGEST_MEMORY: u64 = 1 << 30;
+const MOST_TEXELS: u64 = 1 << 26;
 
-/// A picture in linear light, its rows from top to bottom.
+/// The memory that decoding may take, in bytes: four channels of 16 bits a texel.
+const LARGEST_MEMORY: u64 = MOST_TEXELS * 8;
+
+/// A picture, its rows from top to bottom, as bytes that are decoded to linear light when they are looked up.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {
     width: usize,
     height: usize,
-    texels: Vec<Rgb>,
+    texels: Vec<[u8; 3]>,
+}
+
+/// What goes on beyond the edges of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Beyond {
+    Edge,
+    Again,
 }
 
 /// Why a picture cannot be used as a texture.
@@ -31,32 +41,55 @@ pub enum ImageTextureError {
         /// The decoder's reason.
         source: ::image::ImageError,
     },
+    /// The picture is larger than is accepted.
+    #[error("texture `{name}` is {width}x{height} texels, more than the {most} that are read")]
+    TooLarge {
+        /// What the texture is called.
+        name: String,
+        /// Its width.
+        width: u32,
+        /// Its height.
+        height: u32,
+        /// The largest number of texels.
+        most: u64,
+    },
+}
+
+/// The linear values of the 256 levels of a texel.
+fn levels() -> &'static [f32; 256] {
+    static LEVELS: OnceLock<[f32; 256]> = OnceLock::new();
+    LEVELS.get_or_init(|| std::array::from_fn(|byte| srgb_to_linear(byte as f64 / 255.0) as f32))
 }
 
 impl Image {
-    /// The picture in the bytes of a PNG file, whose values are taken as sRGB; transparency is ignored.
+    /// The picture in the bytes of a PNG or JPEG file, whose values are taken as sRGB; transparency is ignored.
     ///
     /// # Errors
-    /// Bytes that cannot be decoded, or a picture of more than 32768 texels a side or 1 GiB.
+    /// Bytes that cannot be decoded, or a picture of more than 32768 texels a side or 2²⁶ in all. The size is looked at
+    /// before memory is taken for it.
     pub fn decode(name: &str, bytes: &[u8]) -> Result<Self, ImageTextureError> {
         let error = |source| ImageTextureError::Decode { name: name.to_owned(), source };
         let mut limits = ::image::Limits::default();
         limits.max_image_width = Some(LARGEST_SIDE);
         limits.max_image_height = Some(LARGEST_SIDE);
         limits.max_alloc = Some(LARGEST_MEMORY);
-        let mut reader = ::image::ImageReader::new(Cursor::new(bytes))
-            .with_guessed_format()
-            .map_err(|source| error(source.into()))?;
+        let reader = || {
+            ::image::ImageReader::new(Cursor::new(bytes))
+                .with_guessed_format()
+                .map_err(|source| error(source.into()))
+        };
+        let (width, height) = reader()?.into_dimensions().map_err(error)?;
+        if u64::from(width) * u64::from(height) > MOST_TEXELS {
+            let (name, most) = (name.to_owned(), MOST_TEXELS);
+            return Err(ImageTextureError::TooLarge { name, width, height, most });
+        }
+        let mut reader = reader()?;
         reader.limits(limits);
         let picture = reader.decode().map_err(error)?.into_rgb8();
-        let table: Vec<f32> =
-            (0..=255_u8).map(|byte| srgb_to_linear(f64::from(byte) / 255.0) as f32).collect();
-        let texels =
-            picture.pixels().map(|p| Rgb::from_array(p.0.map(|byte| table[usize::from(byte)])));
         Ok(Self {
             width: picture.width() as usize,
             height: picture.height() as usize,
-            texels: texels.collect(),
+            texels: picture.pixels().map(|p| p.0).collect(),
         })
     }
 
@@ -66,16 +99,33 @@ impl Image {
     /// outermost centres the edge goes on.
     #[inline(always)]
     pub fn sample(&self, uv: DVec2) -> Rgb {
+        self.bilinear(uv, Beyond::Edge)
+    }
+
+    /// As [`Image::sample`], but the picture is repeated in all directions.
+    pub fn sample_repeated(&self, uv: DVec2) -> Rgb {
+        let uv = uv - uv.floor();
+        self.bilinear(if uv.is_finite() { uv } else { DVec2::ZERO }, Beyond::Again)
+    }
+
+    #[inline(always)]
+    fn bilinear(&self, uv: DVec2, beyond: Beyond) -> Rgb {
         let x = uv.x * self.width as f64 - 0.5;
         let y = (1.0 - uv.y) * self.height as f64 - 0.5;
         let (column, row) = (x.floor(), y.floor());
         let (p, q) = ((x - column) as f32, (y - row) as f32);
-        let clamped = |i: f64, count: usize| i.clamp(0.0, (count - 1) as f64) as usize; // NaN is 0
-        let (x0, x1) = (clamped(column, self.width), clamped(column + 1.0, self.width));
+        let place = |i: f64, count: usize| match beyond {
+            Beyond::Edge => i.clamp(0.0, (count - 1) as f64) as usize, // NaN is 0
+            Beyond::Again => (i.rem_euclid(count as f64) as usize).min(count - 1),
+        };
+        let (x0, x1) = (place(column, self.width), place(column + 1.0, self.width));
         let (y0, y1) =
-            (clamped(row, self.height) * self.width, clamped(row + 1.0, self.height) * self.width);
-        let upper = self.texels[y0 + x0].lerp(self.texels[y0 + x1], p);
-        let lower = self.texels[y1 + x0].lerp(self.texels[y1 + x1], p);
+            (place(row, self.height) * self.width, place(row + 1.0, self.height) * self.width);
+        let levels = levels();
+        let texel =
+            |at: usize| Rgb::from_array(self.texels[at].map(|byte| levels[usize::from(byte)]));
+        let upper = texel(y0 + x0).lerp(texel(y0 + x1), p);
+        let lower = texel(y1 + x0).lerp(texel(y1 + x1), p);
         upper.lerp(lower, q)
     }
 }
@@ -127,6 +177,47 @@ mod tests {
             "{color}"
         );
         assert!((from_srgb([128.0 / 255.0, 10.0 / 255.0, 1.0]) - color).abs().max_element() < 1e-7);
+    }
+
+    #[test]
+    fn repeated_pictures_have_no_seam() {
+        let image = four_corners();
+        for (uv, color) in [
+            (DVec2::new(0.25, 0.75), Rgb::X),
+            (DVec2::new(-3.75, 7.75), Rgb::X),
+            (DVec2::new(1.0, 0.75), Rgb::new(0.5, 0.5, 0.0)), // between red and green on both sides
+            (DVec2::new(5.0, -2.0), Rgb::splat(0.5)),
+        ] {
+            let found = image.sample_repeated(uv);
+            assert!((found - color).abs().max_element() < 1e-6, "{uv}: {found}");
+        }
+        for far in [1e300, f64::INFINITY, f64::NAN] {
+            assert!(image.sample_repeated(DVec2::splat(far)).is_finite());
+        }
+    }
+
+    /// Oracle: a header that claims 60000 × 60000 texels, with nothing behind it.
+    #[test]
+    fn absurd_sizes_are_refused_before_memory_is_taken() {
+        let mut png = Vec::new();
+        let picture = ::image::RgbImage::new(1, 1);
+        picture.write_to(&mut Cursor::new(&mut png), ::image::ImageFormat::Png).expect("in memory");
+        for side in [60_000_u32, 30_000, 1 << 31] {
+            let mut header = *b"IHDR\0\0\0\0\0\0\0\0\x08\x02\0\0\0";
+            header[4..8].copy_from_slice(&side.to_be_bytes());
+            header[8..12].copy_from_slice(&side.to_be_bytes());
+            png[12..29].copy_from_slice(&header);
+            let mut crc = !0_u32;
+            for byte in header {
+                crc ^= u32::from(byte);
+                for _ in 0..8 {
+                    crc = if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 };
+                }
+            }
+            png[29..33].copy_from_slice(&(!crc).to_be_bytes());
+            let error = Image::decode("bomb", &png).expect_err("too large").to_string();
+            assert!(error.contains(&side.to_string()) || side > 1 << 30, "{error}");
+        }
     }
 
     #[test]

@@ -3,6 +3,8 @@
 pub mod image;
 pub mod pattern;
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 
 pub use self::{
@@ -30,7 +32,20 @@ pub enum Texture {
     /// Two sets of diagonal stripes, woven.
     Plaid(Plaid),
     /// A picture laid on the surface coordinates.
-    Image(std::sync::Arc<Image>),
+    Image(Arc<Image>),
+    /// A picture laid on scaled and shifted surface coordinates, again and again.
+    Repeated(Arc<Image>, UvMap),
+}
+
+/// A change of surface coordinates before a picture is looked up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UvMap {
+    /// What each coordinate is multiplied by.
+    pub scale: DVec2,
+    /// What is added then.
+    pub offset: DVec2,
+    /// Whether the picture's edge goes on beyond it, instead of the picture.
+    pub clamp: bool,
 }
 
 impl Texture {
@@ -42,12 +57,16 @@ impl Texture {
             Self::Checker(checker) => checker.at(at.point),
             Self::Plaid(plaid) => plaid.at(at.point),
             Self::Image(image) => (image.sample(at.uv), 0),
+            Self::Repeated(image, map) => {
+                let uv = at.uv * map.scale + map.offset;
+                (if map.clamp { image.sample(uv) } else { image.sample_repeated(uv) }, 0)
+            }
         }
     }
 
     /// Whether the colour depends on [`TexturePoint::uv`].
     pub fn needs_uv(&self) -> bool {
-        matches!(self, Self::Image(_))
+        matches!(self, Self::Image(_) | Self::Repeated(..))
     }
 
     /// The same texture in a scene whose coordinates were changed by `map`.
@@ -56,7 +75,7 @@ impl Texture {
         match self {
             Self::Checker(checker) => Self::Checker(checker.mapped(map)),
             Self::Plaid(plaid) => Self::Plaid(plaid.mapped(map)),
-            Self::Solid(_) | Self::Image(_) => self,
+            Self::Solid(_) | Self::Image(_) | Self::Repeated(..) => self,
         }
     }
 }

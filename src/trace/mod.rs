@@ -6,6 +6,7 @@
 //! are cheaper together. What a sample becomes does not depend on the batches: its parts are summed in fixed
 //! point ([`sum`]), where order does not matter.
 
+pub mod classic;
 mod counts;
 mod shadow;
 mod signature;
@@ -201,11 +202,11 @@ impl<'a> Tracer<'a> {
         if task.level < self.depth {
             if material.reflection > 0.0 && !(inside && material.is_transmissive()) {
                 self.counts.reflected += 1;
-                let ray = surface.leave(hit, reflect(dir, surface.normal), inside);
+                let ray = surface.leave(hit, mirrored(dir, &surface, inside), inside);
                 self.push(ray, &task, Rgb::splat(material.reflection), Branch::Reflected);
             }
             if material.is_transmissive()
-                && let Some(onward) = self.transmitted(dir, surface.normal, material.ior, inside)
+                && let Some(onward) = self.transmitted(dir, &surface, material.ior, inside)
             {
                 let ray = surface.leave(hit, onward, !inside);
                 self.push(ray, &task, material.transmission, Branch::Transmitted);
@@ -231,13 +232,19 @@ impl<'a> Tracer<'a> {
     /// The direction in which a ray goes on behind a surface, and counts it; `None` if it is totally reflected, which
     /// transmits nothing.
     #[inline(always)]
-    fn transmitted(&mut self, dir: DVec3, normal: DVec3, ior: f64, inside: bool) -> Option<DVec3> {
+    fn transmitted(
+        &mut self,
+        dir: DVec3,
+        surface: &Surface,
+        ior: f64,
+        inside: bool,
+    ) -> Option<DVec3> {
         if ior == 1.0 {
             self.counts.transmitted += 1;
             return Some(dir);
         }
-        let (normal, from, to) = if inside { (-normal, ior, 1.0) } else { (normal, 1.0, ior) };
-        let refracted = refract(dir, normal, from, to)?;
+        let (from, to) = if inside { (ior, 1.0) } else { (1.0, ior) };
+        let refracted = refracted(dir, surface, inside, from, to)?;
         self.counts.refracted += 1;
         Some(refracted)
     }
@@ -263,6 +270,11 @@ impl<'a> Tracer<'a> {
             let cosine = lit.normal().dot(to_light);
             if cosine > 0.0 {
                 let mut ray = lit.surface.leave(&lit.hit, away, lit.inside);
+                let shape = self.scene.shape(lit.hit.primitive);
+                let offset = shape.shadow_offset(&lit.surface, lit.inside);
+                if offset != DVec3::ZERO {
+                    ray.origin += offset;
+                }
                 ray.dir = light.position - ray.origin; // so that the light is at t = 1
                 self.shadows.push(index, ray, to_light, cosine);
                 self.gathered[self.batch[lit.ray].sample as usize].rays += 1;
@@ -299,7 +311,7 @@ impl<'a> Tracer<'a> {
             if lit.diffuse != Rgb::ZERO && material.opacity > 0.0 {
                 let at = TexturePoint { uv: lit.surface.uv, point: lit.surface.point };
                 let (color, cell) = material.texture.at(&at);
-                light += lit.diffuse * color * material.opacity;
+                light += lit.diffuse * color * lit.surface.tint * material.opacity;
                 path = path.cell(cell);
             }
             self.gather(lit.ray, light, path.signature());
@@ -318,8 +330,31 @@ impl Work for Batch<'_, '_> {
 }
 
 impl Lit<'_> {
-    /// The unit normal on the side that the ray came from.
+    /// The shading normal on the side that the ray came from.
     fn normal(&self) -> DVec3 {
-        if self.inside { -self.surface.normal } else { self.surface.normal }
+        if self.inside { -self.surface.shading } else { self.surface.shading }
     }
+}
+
+/// The mirror direction of `dir` by the shading normal. Where that points below the surface, as it may at a grazing view
+/// of a coarse mesh, it is mirrored up again.
+fn mirrored(dir: DVec3, surface: &Surface, inside: bool) -> DVec3 {
+    let side = if inside { -1.0 } else { 1.0 };
+    let onward = reflect(dir, surface.shading * side);
+    if surface.shading != surface.normal && !(onward.dot(surface.normal) * side > 0.0) {
+        return reflect(onward, surface.normal * side);
+    }
+    onward
+}
+
+/// The refracted direction by the shading normal, or by the surface's own where the other faces away from the ray or
+/// sends it back to its side; `None` if it is totally reflected.
+fn refracted(dir: DVec3, surface: &Surface, inside: bool, from: f64, to: f64) -> Option<DVec3> {
+    let side = if inside { -1.0 } else { 1.0 };
+    let (normal, shading) = (surface.normal * side, surface.shading * side);
+    if shading == normal || !(dir.dot(shading) < 0.0) {
+        return refract(dir, normal, from, to);
+    }
+    let onward = refract(dir, shading, from, to)?;
+    if onward.dot(normal) < 0.0 { Some(onward) } else { refract(dir, normal, from, to) }
 }

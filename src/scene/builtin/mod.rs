@@ -1,6 +1,6 @@
 //! The scenes inside the program. Their texts and pictures are part of the binary, so they render anywhere.
 
-use super::{Scene, desc::SceneDesc, error::SceneError, generators};
+use super::{Scene, desc::SceneDesc, error::SceneError, generators, parts::Parts};
 use crate::texture::Image;
 
 /// A built-in scene.
@@ -12,7 +12,7 @@ pub struct Builtin {
     pub description: &'static str,
     text: &'static str,
     /// Makes the scene with so many objects, for those that have as many as one likes.
-    generator: Option<fn(u32) -> Result<Scene, SceneError>>,
+    generator: Option<fn(u32) -> Result<Parts, SceneError>>,
 }
 
 /// The scene of any number of spheres, without the spheres.
@@ -38,12 +38,20 @@ const PICTURES: &[(&str, &[u8])] = &[
     ("flower.png", include_bytes!("../../../textures/flower.png")),
 ];
 
+/// What begins the name of one of the program's own pictures in a scene file.
+pub const PREFIX: &str = "builtin:";
+
 /// The built-in scenes.
 pub fn builtins() -> &'static [Builtin] {
     BUILTINS
 }
 
 impl Builtin {
+    /// The scene as a file would say it, without generated objects.
+    pub fn text(&self) -> &'static str {
+        self.text
+    }
+
     /// The scene's description.
     ///
     /// # Errors
@@ -53,6 +61,33 @@ impl Builtin {
             |source| SceneError::Syntax { name: self.name.to_owned(), source: Box::new(source) };
         toml::from_str(self.text).map_err(syntax)
     }
+
+    /// The scene's parts, with so many objects, or its usual number of them.
+    ///
+    /// # Errors
+    /// The objects are given by the description, but a number of them was asked for.
+    pub fn parts(&self, objects: Option<u32>) -> Result<Parts, SceneError> {
+        match (self.generator, objects) {
+            (Some(generator), objects) => generator(objects.unwrap_or(generators::DEFAULT_OBJECTS)),
+            (None, None) => Parts::try_new(&self.desc()?, &mut picture),
+            (None, Some(_)) => {
+                let generated = BUILTINS.iter().filter(|builtin| builtin.generator.is_some());
+                let known = generated.map(|builtin| builtin.name).collect::<Vec<_>>().join(", ");
+                Err(SceneError::NotGenerated { name: self.name.to_owned(), known })
+            }
+        }
+    }
+}
+
+/// The built-in scene of this name.
+///
+/// # Errors
+/// No scene has this name.
+pub fn builtin(name: &str) -> Result<&'static Builtin, SceneError> {
+    BUILTINS.iter().find(|builtin| builtin.name == name).ok_or_else(|| {
+        let known = BUILTINS.iter().map(|builtin| builtin.name).collect::<Vec<_>>().join(", ");
+        SceneError::UnknownScene { name: name.to_owned(), known }
+    })
 }
 
 /// The built-in scene of this name, ready to trace.
@@ -68,19 +103,8 @@ pub fn load_builtin(name: &str) -> Result<Scene, SceneError> {
 /// # Errors
 /// No scene has this name; or its objects are given by its description, but a number of them was asked for.
 pub fn load_builtin_of(name: &str, objects: Option<u32>) -> Result<Scene, SceneError> {
-    let builtin = BUILTINS.iter().find(|builtin| builtin.name == name).ok_or_else(|| {
-        let known = BUILTINS.iter().map(|builtin| builtin.name).collect::<Vec<_>>().join(", ");
-        SceneError::UnknownScene { name: name.to_owned(), known }
-    })?;
-    match (builtin.generator, objects) {
-        (Some(generator), objects) => generator(objects.unwrap_or(generators::DEFAULT_OBJECTS)),
-        (None, None) => Scene::try_new(builtin.name, &builtin.desc()?, &mut picture),
-        (None, Some(_)) => {
-            let generated = BUILTINS.iter().filter(|builtin| builtin.generator.is_some());
-            let known = generated.map(|builtin| builtin.name).collect::<Vec<_>>().join(", ");
-            Err(SceneError::NotGenerated { name: name.to_owned(), known })
-        }
-    }
+    let builtin = builtin(name)?;
+    Scene::assemble(builtin.name, builtin.parts(objects)?)
 }
 
 /// One of the program's own pictures.
@@ -88,6 +112,7 @@ pub fn load_builtin_of(name: &str, objects: Option<u32>) -> Result<Scene, SceneE
 /// # Errors
 /// None has this name.
 pub fn picture(name: &str) -> Result<Image, SceneError> {
+    let name = name.strip_prefix(PREFIX).unwrap_or(name);
     let Some((_, bytes)) = PICTURES.iter().find(|(known, _)| *known == name) else {
         let known = PICTURES.iter().map(|(known, _)| *known).collect::<Vec<_>>().join(", ");
         return Err(SceneError::UnknownImage { name: name.to_owned(), known });

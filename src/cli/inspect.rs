@@ -1,0 +1,205 @@
+//! `whitted inspect`: what a file holds, what was repaired, what is missing.
+
+use std::fmt::Write;
+
+use serde::Serialize;
+use whitted::scene::obj::{ModelReport, inspect_model};
+use whitted::scene::{LoadOptions, Loaded, Warning};
+
+use super::args::InspectArgs;
+use super::failure::{Failure, warn};
+use super::streams;
+
+pub(crate) fn run(args: &InspectArgs) -> Result<(), Failure> {
+    let is_model =
+        args.file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj"));
+    if !is_model {
+        return scene(args);
+    }
+    let report = inspect_model(&args.file)?;
+    let text = if args.json { json(&report)? } else { text(&report)? };
+    streams::write_stdout(text.as_bytes())?;
+    warn(&report.warnings, args.strict, true)
+}
+
+/// A scene: what it is made of.
+fn scene(args: &InspectArgs) -> Result<(), Failure> {
+    let name = args.file.to_string_lossy();
+    let Loaded { scene, warnings } = whitted::scene::load(&name, &LoadOptions::default())?;
+    let [width, height] = scene.resolution();
+    let text = if args.json {
+        let json = JsonScene {
+            scene: scene.name(),
+            resolution: [width, height],
+            depth: scene.depth(),
+            primitives: scene.primitive_count(),
+            lights: scene.light_count(),
+            warnings: json_warnings(&warnings),
+        };
+        serde_json::to_string_pretty(&json)? + "\n"
+    } else {
+        let mut out = String::new();
+        writeln!(out, "{}", scene.name())?;
+        writeln!(out, "picture      {width}x{height} pixels, depth {}", scene.depth())?;
+        writeln!(out, "primitives   {}", scene.primitive_count())?;
+        writeln!(out, "lights       {}", scene.light_count())?;
+        for warning in &warnings {
+            writeln!(out, "warning      {warning}")?;
+        }
+        out
+    };
+    streams::write_stdout(text.as_bytes())?;
+    warn(&warnings, args.strict, true)
+}
+
+fn json_warnings(warnings: &[Warning]) -> Vec<JsonWarning<'_>> {
+    warnings
+        .iter()
+        .map(|Warning { file, line, message }| JsonWarning { file, line: *line, message })
+        .collect()
+}
+
+#[derive(Serialize)]
+struct JsonScene<'a> {
+    scene: &'a str,
+    resolution: [u32; 2],
+    depth: u32,
+    primitives: usize,
+    lights: usize,
+    warnings: Vec<JsonWarning<'a>>,
+}
+
+#[derive(Serialize)]
+struct Json<'a> {
+    file: &'a str,
+    positions: usize,
+    texcoords: usize,
+    normals: usize,
+    faces: usize,
+    triangles: usize,
+    max_corners: usize,
+    area: f64,
+    bounds: [[f64; 3]; 2],
+    closed: bool,
+    open_edges: usize,
+    open_edge_examples: Vec<JsonEdge>,
+    kept_triangles: usize,
+    objects: usize,
+    groups: usize,
+    polylines: usize,
+    unused_positions: usize,
+    degenerate_faces: usize,
+    duplicate_faces: usize,
+    materials: &'a [String],
+    textures: Vec<JsonTexture<'a>>,
+    warnings: Vec<JsonWarning<'a>>,
+}
+
+#[derive(Serialize)]
+struct JsonEdge {
+    line: u32,
+    from: [f64; 3],
+    to: [f64; 3],
+    uses: u32,
+}
+
+#[derive(Serialize)]
+struct JsonTexture<'a> {
+    name: &'a str,
+    material: &'a str,
+    found: bool,
+}
+
+#[derive(Serialize)]
+struct JsonWarning<'a> {
+    file: &'a str,
+    line: u32,
+    message: &'a str,
+}
+
+fn json(report: &ModelReport) -> serde_json::Result<String> {
+    let json = Json {
+        file: &report.path,
+        positions: report.positions,
+        texcoords: report.texcoords,
+        normals: report.normals,
+        faces: report.faces,
+        triangles: report.triangles,
+        max_corners: report.max_corners,
+        area: report.area,
+        bounds: [report.bounds.min.to_array(), report.bounds.max.to_array()],
+        closed: report.closed,
+        open_edges: report.open_edges,
+        open_edge_examples: report
+            .open_examples
+            .iter()
+            .map(|e| JsonEdge { line: e.line, from: e.from, to: e.to, uses: e.uses })
+            .collect(),
+        kept_triangles: report.kept_triangles,
+        objects: report.objects,
+        groups: report.groups,
+        polylines: report.polylines,
+        unused_positions: report.unused_positions,
+        degenerate_faces: report.degenerate_faces,
+        duplicate_faces: report.duplicate_faces,
+        materials: &report.materials,
+        textures: report
+            .textures
+            .iter()
+            .map(|t| JsonTexture { name: &t.name, material: &t.material, found: t.found })
+            .collect(),
+        warnings: json_warnings(&report.warnings),
+    };
+    serde_json::to_string_pretty(&json).map(|text| text + "\n")
+}
+
+fn text(report: &ModelReport) -> Result<String, std::fmt::Error> {
+    let mut out = String::new();
+    let (min, max) = (report.bounds.min, report.bounds.max);
+    writeln!(out, "{}", report.path)?;
+    writeln!(out, "positions    {} ({} unused)", report.positions, report.unused_positions)?;
+    writeln!(out, "texcoords    {}", report.texcoords)?;
+    writeln!(out, "normals      {}", report.normals)?;
+    writeln!(out, "faces        {}, of up to {} corners", report.faces, report.max_corners)?;
+    writeln!(out, "triangles    {}, {} of them kept", report.triangles, report.kept_triangles)?;
+    writeln!(
+        out,
+        "dropped      {} degenerate, {} duplicate faces",
+        report.degenerate_faces, report.duplicate_faces
+    )?;
+    writeln!(out, "area         {}", report.area)?;
+    writeln!(out, "bounds       ({min}) to ({max})")?;
+    if report.closed {
+        writeln!(out, "closed       yes")?;
+    } else {
+        writeln!(
+            out,
+            "closed       no, {} edges are not between two faces that agree:",
+            report.open_edges
+        )?;
+        for edge in &report.open_examples {
+            let ([a, b, c], [d, e, f]) = (edge.from, edge.to);
+            writeln!(
+                out,
+                "  line {}: ({a}, {b}, {c}) to ({d}, {e}, {f}), used {} times",
+                edge.line, edge.uses
+            )?;
+        }
+    }
+    writeln!(
+        out,
+        "parts        {} objects, {} groups, {} points and polylines (left out)",
+        report.objects, report.groups, report.polylines
+    )?;
+    for material in &report.materials {
+        writeln!(out, "material     {material}")?;
+    }
+    for texture in &report.textures {
+        let found = if texture.found { "found" } else { "missing" };
+        writeln!(out, "texture      {} of {}: {found}", texture.name, texture.material)?;
+    }
+    for warning in &report.warnings {
+        writeln!(out, "warning      {warning}")?;
+    }
+    Ok(out)
+}

@@ -1,0 +1,307 @@
+//! A scene's text against the table of keys: everything that is wrong, not only the first.
+
+use std::ops::Range as Span;
+
+use toml::{
+    Spanned,
+    de::{DeTable, DeValue},
+};
+
+use super::{
+    Place,
+    fault::{Fault, Faults},
+    keys::{Key, Kind, Range, SCENE},
+    nearest,
+};
+
+type Value<'a> = Spanned<DeValue<'a>>;
+
+/// Goes through a text and gathers its faults.
+#[derive(Debug)]
+pub(super) struct Checker<'a> {
+    name: &'a str,
+    text: &'a str,
+    root: Spanned<DeTable<'a>>,
+    pub(super) faults: Vec<(Span<usize>, String)>,
+}
+
+impl<'a> Checker<'a> {
+    pub(super) fn new(name: &'a str, text: &'a str) -> Self {
+        let (root, errors) = DeTable::parse_recoverable(text);
+        let fault = |error: &toml::de::Error| {
+            (error.span().unwrap_or(0..0), error.message().replace('\n', "; "))
+        };
+        Self { name, text, root, faults: errors.iter().map(fault).collect() }
+    }
+
+    pub(super) fn fault(&mut self, span: Span<usize>, message: String) {
+        self.faults.push((span, message));
+    }
+
+    pub(super) fn into_faults(mut self) -> Faults {
+        self.faults.sort_by_key(|(span, _)| span.start);
+        self.faults.dedup();
+        let faults = self
+            .faults
+            .into_iter()
+            .map(|(span, message)| Fault::new(self.text, span, message))
+            .collect();
+        Faults { file: self.name.to_owned(), faults }
+    }
+
+    /// Finds the faults; `exists` says whether a file that is named is there.
+    pub(super) fn check(&mut self, exists: &dyn Fn(&str) -> bool) {
+        let root = std::mem::replace(&mut self.root, Spanned::new(0..0, DeTable::new()));
+        // What could not be parsed may be what seems to be missing.
+        let is_whole = self.faults.is_empty();
+        let walk = Walk { root: root.get_ref(), exists, is_whole };
+        walk.table(root.get_ref(), SCENE, 0..0, "the scene", &mut self.faults);
+        self.root = root;
+    }
+
+    /// Where in the text a part of the scene is.
+    pub(super) fn span(&self, place: &Place) -> Span<usize> {
+        let get = |key: &str| find(self.root.get_ref(), key);
+        let item = |key: &str, k: usize| get(key)?.get_ref().as_array()?.get(k);
+        let named = |key: &str, name: &str| find(get(key)?.get_ref().as_table()?, name);
+        let found = match place {
+            Place::Scene(key) => get(key),
+            Place::Light(k) => item("light", *k),
+            Place::Object(k) => item("object", *k),
+            Place::Model(k) => item("model", *k),
+            Place::Texture(name) => named("texture", name),
+            Place::Material(name) => named("material", name),
+        };
+        found.map_or(0..0, Spanned::span)
+    }
+}
+
+fn find<'t, 'a>(table: &'t DeTable<'a>, name: &str) -> Option<&'t Value<'a>> {
+    table.iter().find(|(key, _)| key.get_ref() == name).map(|(_, value)| value)
+}
+
+struct Walk<'t, 'a> {
+    root: &'t DeTable<'a>,
+    exists: &'t dyn Fn(&str) -> bool,
+    is_whole: bool,
+}
+
+type Found = Vec<(Span<usize>, String)>;
+
+impl Walk<'_, '_> {
+    fn table(&self, table: &DeTable, keys: &[Key], at: Span<usize>, of: &str, found: &mut Found) {
+        for (name, value) in table {
+            match keys.iter().find(|key| key.name == name.get_ref()) {
+                Some(key) => self.value(value, key.kind, key.name, found),
+                None => found.push((name.span(), unknown("key", name.get_ref(), keys))),
+            }
+        }
+        for key in keys.iter().filter(|key| key.required && self.is_whole) {
+            if find(table, key.name).is_none() {
+                found.push((at.clone(), format!("{of} has no `{}`: {}", key.name, key.about)));
+            }
+        }
+    }
+
+    fn one_of(&self, table: &DeTable, keys: &[Key], at: Span<usize>, of: &str, found: &mut Found) {
+        for (name, value) in table {
+            match keys.iter().find(|key| key.name == name.get_ref()) {
+                Some(key) => self.value(value, key.kind, key.name, found),
+                None => found.push((name.span(), unknown("kind", name.get_ref(), keys))),
+            }
+        }
+        if table.len() != 1 {
+            let known = listed(keys.iter().map(|key| key.name));
+            found.push((at, format!("`{of}` must be exactly one of {known}")));
+        }
+    }
+
+    fn value(&self, value: &Value, kind: Kind, name: &str, found: &mut Found) {
+        let span = value.span();
+        let mut wrong = |expected: &str| {
+            let what = shown(value.get_ref());
+            found.push((span.clone(), format!("`{name}` is {what}, but must be {expected}")));
+        };
+        match kind {
+            Kind::Number(range) => match number(value.get_ref()) {
+                Some(x) if is_in(x, range) => {}
+                _ => wrong(range_text(range)),
+            },
+            Kind::Whole(least) => match whole(value.get_ref()) {
+                Some(x) if x >= least => {}
+                _ => wrong(&format!("a whole number from {least} to {}", u32::MAX)),
+            },
+            Kind::Text => {
+                if value.get_ref().as_str().is_none_or(str::is_empty) {
+                    wrong("text");
+                }
+            }
+            Kind::File => match value.get_ref().as_str() {
+                Some(file) if !file.is_empty() => {
+                    if !(self.exists)(file) {
+                        found.push((span, format!("file `{file}` is missing")));
+                    }
+                }
+                _ => wrong("the name of a file"),
+            },
+            Kind::Color => {
+                if vector(value, |x| (0.0..=1.0).contains(&x)).is_none() {
+                    wrong("three channels from 0 to 1, such as [1, 0.5, 0]");
+                }
+            }
+            Kind::Vector => {
+                if vector(value, f64::is_finite).is_none() {
+                    wrong("three finite numbers, such as [1, 2.5, -3]");
+                }
+            }
+            Kind::Size => {
+                let sides =
+                    value.get_ref().as_array().map(|a| a.iter().map(|v| whole(v.get_ref())));
+                let is_size = sides.is_some_and(|mut sides| {
+                    sides.len() == 2 && sides.all(|side| side.is_some_and(|n| n >= 1))
+                });
+                if !is_size {
+                    wrong("two whole numbers from 1 on, such as [640, 480]");
+                }
+            }
+            Kind::Vectors { least, most } => self.vectors(value, least, most, name, found),
+            Kind::Choice(choices) => {
+                let text = value.get_ref().as_str();
+                if !text.is_some_and(|text| choices.contains(&text)) {
+                    let hint = text.and_then(|t| nearest(t, choices.iter().copied()));
+                    let hint = hint.map_or(String::new(), |h| format!("; did you mean `{h}`?"));
+                    wrong(&format!("one of {}{hint}", listed(choices.iter().copied())));
+                }
+            }
+            Kind::Name(table) => match value.get_ref().as_str() {
+                Some(text) => self.name(text, table, name, value.span(), found),
+                None => wrong(&format!("the name of a {table}")),
+            },
+            Kind::Table(keys) => match value.get_ref().as_table() {
+                Some(table) => self.table(table, keys, span, &format!("`{name}`"), found),
+                None => wrong("a table"),
+            },
+            Kind::OneOf(keys) => match value.get_ref().as_table() {
+                Some(table) => self.one_of(table, keys, span, name, found),
+                None => wrong("a table"),
+            },
+            Kind::Named(kind) => match value.get_ref().as_table() {
+                Some(table) => {
+                    table.iter().for_each(|(key, v)| self.value(v, *kind, key.get_ref(), found));
+                }
+                None => wrong("a table of names"),
+            },
+            Kind::List(kind) => match value.get_ref().as_array() {
+                Some(list) => list.iter().for_each(|v| self.value(v, *kind, name, found)),
+                None => wrong(&format!("a list; write [[{name}]]")),
+            },
+        }
+    }
+
+    fn vectors(&self, value: &Value, least: usize, most: usize, name: &str, found: &mut Found) {
+        let Some(list) = value.get_ref().as_array() else {
+            let what = shown(value.get_ref());
+            found
+                .push((value.span(), format!("`{name}` is {what}, but must be a list of vectors")));
+            return;
+        };
+        let count = list.len();
+        if count < least || count > most {
+            let range =
+                if least == most { least.to_string() } else { format!("{least} to {most}") };
+            found.push((
+                value.span(),
+                format!("`{name}` has {count} vectors, but must have {range}"),
+            ));
+        }
+        for vector in list {
+            self.value(vector, Kind::Vector, name, found);
+        }
+    }
+
+    /// Whether there is an entry of this name in the table that holds such names.
+    fn name(&self, text: &str, table: &str, key: &str, span: Span<usize>, found: &mut Found) {
+        let entries = find(self.root, table).and_then(|value| value.get_ref().as_table());
+        if entries.is_some_and(|entries| find(entries, text).is_some()) || !self.is_whole {
+            return;
+        }
+        let names = || entries.into_iter().flatten().map(|(name, _)| name.get_ref().as_ref());
+        let hint = match nearest(text, names()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None if names().next().is_none() => format!("there is no [{table}] at all"),
+            None => format!("known: {}", listed(names().take(12))),
+        };
+        found.push((
+            span,
+            format!("`{key}` is `{text}`, which is no {table} of this scene; {hint}"),
+        ));
+    }
+}
+
+fn unknown(what: &str, name: &str, keys: &[Key]) -> String {
+    let names = || keys.iter().map(|key| key.name);
+    match nearest(name, names()) {
+        Some(near) => format!("unknown {what} `{name}`; did you mean `{near}`?"),
+        None => format!("unknown {what} `{name}`; known: {}", listed(names())),
+    }
+}
+
+fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    names.map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+}
+
+/// A value as a message shows it.
+fn shown(value: &DeValue) -> String {
+    match value {
+        DeValue::String(text) if text.len() <= 40 => format!("\"{}\"", text.escape_debug()),
+        DeValue::String(_) => "a text".to_owned(),
+        DeValue::Integer(_) | DeValue::Float(_) => {
+            number(value).map_or("a number".to_owned(), |x| x.to_string())
+        }
+        DeValue::Boolean(value) => value.to_string(),
+        DeValue::Datetime(_) => "a date".to_owned(),
+        DeValue::Array(list) => match list.iter().map(|v| number(v.get_ref())).collect() {
+            Some::<Vec<f64>>(numbers) if numbers.len() <= 4 => format!("{numbers:?}"),
+            _ => format!("a list of {}", list.len()),
+        },
+        DeValue::Table(_) => "a table".to_owned(),
+    }
+}
+
+fn number(value: &DeValue) -> Option<f64> {
+    match value {
+        DeValue::Float(x) => x.as_str().replace('_', "").parse().ok(),
+        DeValue::Integer(x) => i64::from_str_radix(x.as_str(), x.radix()).ok().map(|x| x as f64),
+        _ => None,
+    }
+}
+
+fn whole(value: &DeValue) -> Option<u32> {
+    let integer = value.as_integer()?;
+    i64::from_str_radix(integer.as_str(), integer.radix()).ok()?.try_into().ok()
+}
+
+fn vector(value: &Value, accepts: impl Fn(f64) -> bool) -> Option<()> {
+    let list = value.get_ref().as_array()?;
+    let is_good = |v: &Value| number(v.get_ref()).is_some_and(&accepts);
+    (list.len() == 3 && list.iter().all(is_good)).then_some(())
+}
+
+fn is_in(x: f64, range: Range) -> bool {
+    x.is_finite()
+        && match range {
+            Range::Any => true,
+            Range::Positive => x > 0.0,
+            Range::AtLeastZero => x >= 0.0,
+            Range::Angle => x > 0.0 && x < 180.0,
+        }
+}
+
+fn range_text(range: Range) -> &'static str {
+    match range {
+        Range::Any => "a finite number",
+        Range::Positive => "a positive number",
+        Range::AtLeastZero => "zero or a positive number",
+        Range::Angle => "an angle in degrees, between 0 and 180",
+    }
+}

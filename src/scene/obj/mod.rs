@@ -1,0 +1,95 @@
+//! Models in OBJ files with MTL materials, as they really are.
+//!
+//! The file is read by a reader of its own, in one pass over the bytes, rather than by `tobj` behind a cleaning pass: what
+//! has to be cleaned (byte-order marks, continuations, comments, encodings, number spellings) takes a full tokenizer, and
+//! what has to be known afterwards (the line of every face, smoothing groups, normals that are missing face by face)
+//! does not survive `tobj`. `benches/load.rs` measures both.
+
+mod build;
+mod closed;
+mod error;
+pub(crate) mod files;
+mod materials;
+mod mtl;
+mod normals;
+mod parse;
+mod report;
+mod weld;
+
+use std::path::Path;
+
+pub use self::{
+    error::ModelError,
+    report::{ModelReport, OpenEdge, TextureReport},
+};
+use super::{
+    text::{self, decode::LARGEST_FILE},
+    warning::Warning,
+};
+use crate::{geometry::Mesh, material::Material};
+
+/// A model, repaired and ready to be placed in a scene.
+#[derive(Debug)]
+pub struct Model {
+    /// The triangles.
+    pub mesh: Mesh,
+    /// The materials.
+    pub materials: Vec<Material>,
+    /// The material of each triangle, as a place in `materials`.
+    pub material_of: Vec<u32>,
+    /// What was odd about the file.
+    pub warnings: Vec<Warning>,
+}
+
+/// Reads the model of an OBJ file, its material libraries and their pictures.
+///
+/// # Errors
+/// The file cannot be read, is no text, holds no face, or has a statement that cannot be right.
+pub fn load_model(path: &Path) -> Result<Model, ModelError> {
+    let (obj, library) = read(path)?;
+    let shown = path.display().to_string();
+    build::Builder::new(&shown, obj, library)?.model()
+}
+
+/// As [`load_model`], and counts what the file holds.
+///
+/// # Errors
+/// Those of [`load_model`].
+pub fn inspect_model(path: &Path) -> Result<ModelReport, ModelError> {
+    let (obj, library) = read(path)?;
+    let shown = path.display().to_string();
+    let builder = build::Builder::new(&shown, obj, library)?;
+    let mut report = builder.report();
+    let model = builder.model()?;
+    report.kept_triangles = model.mesh.triangles().len();
+    report.warnings = model.warnings;
+    Ok(report)
+}
+
+/// The statements of a file; its materials and pictures are read meanwhile.
+fn read(path: &Path) -> Result<(parse::Obj, materials::Library), ModelError> {
+    let shown = path.display().to_string();
+    let not_read = |source| ModelError::Text { path: shown.clone(), source };
+    let bytes = text::read_limited(path, LARGEST_FILE).map_err(not_read)?;
+    let text = text::decode(&bytes).map_err(not_read)?;
+    let (obj, library) = rayon::join(
+        || parse::Obj::parse(&shown, &text),
+        || materials::Library::read(path, &libraries(&text)),
+    );
+    Ok((obj?, library))
+}
+
+/// The `mtllib` statements of a text, found without reading the rest.
+fn libraries(text: &[u8]) -> Vec<(String, u32)> {
+    if memchr::memmem::find(text, b"mtllib").is_none() {
+        return Vec::new();
+    }
+    let (mut found, mut lines) = (Vec::new(), text::Lines::new(text));
+    while let Some((number, line)) = lines.next_line() {
+        let mut tokens = text::Tokens::new(line);
+        if line.contains(&b'm') && tokens.next_word() == Some(b"mtllib") {
+            found.push((text::name_of(tokens.rest_as_name()), number));
+        }
+    }
+    found
+}

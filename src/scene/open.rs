@@ -1,0 +1,185 @@
+//! From what the user names to a scene: built-in scenes, model files, models added to either.
+
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+
+use super::{
+    Scene,
+    builtin::{self, builtins},
+    error::SceneError,
+    format::SceneText,
+    nff,
+    obj::{self, files},
+    parts::{CameraPlan, Parts, Placement},
+    stage, text,
+    warning::Warning,
+};
+use crate::texture::Image;
+
+/// What the user may change about a scene before it is built.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LoadOptions {
+    /// Models to add.
+    pub models: Vec<ModelPlace>,
+    /// Where the camera is, instead of where the scene has it.
+    pub eye: Option<DVec3>,
+    /// What is in the middle of the picture.
+    pub look_at: Option<DVec3>,
+    /// The number of objects of a generated scene.
+    pub objects: Option<u32>,
+    /// Which direction is up: in the picture, and for a model that comes alone also in its own space.
+    pub up: Option<DVec3>,
+    /// The vertical field of view in degrees.
+    pub fov: Option<f64>,
+    /// The number of pixel rows, where a file gives its field of view between the outermost ones; the file's own number
+    /// if not given.
+    pub rows: Option<u32>,
+}
+
+/// A model to add to a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelPlace {
+    /// The OBJ file.
+    pub path: PathBuf,
+    /// Where the middle of its lowest side stands; on the floor in front of the scene's middle if not given.
+    pub at: Option<DVec3>,
+    /// The length of its largest side; a fitting one if not given.
+    pub size: Option<f64>,
+}
+
+/// A scene, and what was odd about its files.
+#[derive(Debug)]
+pub struct Loaded {
+    /// The scene.
+    pub scene: Scene,
+    /// What was odd.
+    pub warnings: Vec<Warning>,
+}
+
+/// The scene that `name` means: the built-in one of that name, or the file.
+///
+/// # Errors
+/// There is no such scene, or what is wrong with it.
+pub fn load(name: &str, options: &LoadOptions) -> Result<Loaded, SceneError> {
+    let mut warnings = Vec::new();
+    let (short, mut parts) = if let Some(found) = builtins().iter().find(|b| b.name == name) {
+        (name.to_owned(), found.parts(options.objects)?)
+    } else {
+        let path = Path::new(name);
+        let kind = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+        if options.objects.is_some() {
+            let known = "spheres".to_owned();
+            return Err(SceneError::NotGenerated { name: name.to_owned(), known });
+        }
+        let parts = match kind.as_deref() {
+            Some("obj") => model_alone(path, options, &mut warnings)?,
+            Some("toml") => scene_file(path, &mut warnings)?,
+            Some("nff") => {
+                let scene = nff::load_nff(path, options.rows)?;
+                warnings.extend(scene.warnings);
+                scene.parts
+            }
+            _ => {
+                let known = builtins().iter().map(|b| b.name).collect::<Vec<_>>().join(", ");
+                return Err(SceneError::UnknownFile { name: name.to_owned(), known });
+            }
+        };
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        (stem, parts)
+    };
+    for place in &options.models {
+        add(&mut parts, place, &mut warnings)?;
+    }
+    let CameraPlan { eye, look_at, up, vertical_fov } = &mut parts.camera;
+    for (ours, users) in [(eye, options.eye), (look_at, options.look_at), (up, options.up)] {
+        if let Some(value) = users {
+            *ours = value;
+        }
+    }
+    if let Some(fov) = options.fov {
+        *vertical_fov = fov;
+    }
+    Ok(Loaded { scene: Scene::assemble(&short, parts)?, warnings })
+}
+
+fn model_alone(
+    path: &Path,
+    options: &LoadOptions,
+    warnings: &mut Vec<Warning>,
+) -> Result<Parts, SceneError> {
+    let mut model = obj::load_model(path)?;
+    warnings.append(&mut model.warnings);
+    let up = options.up.filter(|up| up.is_finite()).unwrap_or(DVec3::Y);
+    stage::stage(model, up, options.fov).map_err(|source| SceneError::Shape {
+        object: 1,
+        kind: "floor",
+        source,
+    })
+}
+
+/// The scene of a TOML file; what it names is looked for beside it.
+fn scene_file(path: &Path, warnings: &mut Vec<Warning>) -> Result<Parts, SceneError> {
+    let shown = path.display().to_string();
+    let not_read = |source| SceneError::Text { path: shown.clone(), source };
+    let bytes = text::read_limited(path, LARGEST_SCENE).map_err(not_read)?;
+    let decoded = text::decode(&bytes).map_err(not_read)?;
+    let text = String::from_utf8_lossy(&decoded);
+    let base = path.parent().unwrap_or(Path::new(""));
+    let scene = SceneText::parse(&shown, &text, &|file| {
+        file.starts_with(builtin::PREFIX) || files::find(base, file).is_some()
+    })?;
+    let mut images = |name: &str| picture(base, name);
+    let mut models = |name: &str| {
+        let Some(file) = files::find(base, name) else {
+            return Err(no_file("model", name, base));
+        };
+        let mut model = obj::load_model(&file)?;
+        warnings.append(&mut model.warnings);
+        Ok(model)
+    };
+    Parts::gather(&scene.desc, &mut images, &mut models).map_err(|found| {
+        let found = found.into_iter().map(|(place, error)| (place, error.to_string())).collect();
+        SceneError::Invalid(scene.faults(found))
+    })
+}
+
+/// The largest scene file that is read, in bytes.
+const LARGEST_SCENE: u64 = 1 << 28;
+
+/// The largest picture file that is read, in bytes.
+const LARGEST_PICTURE: u64 = 1 << 30;
+
+fn picture(base: &Path, name: &str) -> Result<Image, SceneError> {
+    if name.starts_with(builtin::PREFIX) {
+        return builtin::picture(name);
+    }
+    let Some(file) = files::find(base, name) else {
+        return Err(no_file("texture", name, base));
+    };
+    let bytes = text::read_limited(&file, LARGEST_PICTURE)
+        .map_err(|source| SceneError::Text { path: file.display().to_string(), source })?;
+    Ok(Image::decode(name, &bytes)?)
+}
+
+fn no_file(what: &'static str, name: &str, base: &Path) -> SceneError {
+    let folder = if base.as_os_str().is_empty() { Path::new(".") } else { base };
+    SceneError::NoFile { what, name: name.to_owned(), folder: folder.display().to_string() }
+}
+
+fn add(
+    parts: &mut Parts,
+    place: &ModelPlace,
+    warnings: &mut Vec<Warning>,
+) -> Result<(), SceneError> {
+    let mut model = obj::load_model(&place.path)?;
+    warnings.append(&mut model.warnings);
+    let bounds = model.mesh.bounds();
+    let (free, scale) = stage::free_place(parts, bounds.extent(), place.size);
+    let at = place.at.unwrap_or(free);
+    let shift = at - stage::foot(&bounds) * scale;
+    let placement = Placement { scale, shift, ..Placement::NONE };
+    placement.check(&place.path.display().to_string(), &model)?;
+    parts.add_model(model, &placement);
+    Ok(())
+}

@@ -1,0 +1,105 @@
+//! Lines that end in LF, CR LF or CR, with a `\` at the end to go on in the next.
+
+use memchr::{memchr, memchr2};
+
+/// The lines of a text, numbered from 1, continuations joined.
+#[derive(Debug)]
+pub struct Lines<'a> {
+    rest: &'a [u8],
+    number: u32,
+    joined: Vec<u8>,
+}
+
+impl<'a> Lines<'a> {
+    /// The lines of `text`.
+    pub fn new(text: &'a [u8]) -> Self {
+        Self { rest: text, number: 0, joined: Vec::new() }
+    }
+
+    /// The next line and its number (that of its first part), without its end.
+    ///
+    /// Not an `Iterator`: a joined line lives until the next call.
+    #[inline]
+    pub fn next_line(&mut self) -> Option<(u32, &[u8])> {
+        if self.rest.is_empty() {
+            return None;
+        }
+        let line = self.cut();
+        let number = self.number;
+        if !goes_on(line) {
+            return Some((number, line));
+        }
+        self.joined.clear();
+        let mut part = line;
+        while goes_on(part) {
+            let end = part.trim_ascii_end();
+            self.joined.extend_from_slice(&end[..end.len() - 1]);
+            self.joined.push(b' ');
+            if self.rest.is_empty() {
+                part = &[];
+                break;
+            }
+            part = self.cut();
+        }
+        self.joined.extend_from_slice(part);
+        Some((number, &self.joined))
+    }
+
+    #[inline]
+    fn cut(&mut self) -> &'a [u8] {
+        self.number = self.number.saturating_add(1);
+        let text = self.rest;
+        let Some(end) = memchr2(b'\n', b'\r', text) else {
+            self.rest = &[];
+            return text;
+        };
+        let next = if text[end..].starts_with(b"\r\n") { end + 2 } else { end + 1 };
+        self.rest = &text[next..];
+        &text[..end]
+    }
+}
+
+/// Whether the line ends in a backslash that is no part of a comment.
+#[inline]
+fn goes_on(line: &[u8]) -> bool {
+    match line.last() {
+        Some(b'\\') => {}
+        Some(b' ' | b'\t') if line.trim_ascii_end().last() == Some(&b'\\') => {}
+        _ => return false,
+    }
+    memchr(b'#', line).is_none()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lines(text: &str) -> Vec<(u32, String)> {
+        let mut lines = Lines::new(text.as_bytes());
+        let mut found = Vec::new();
+        while let Some((number, line)) = lines.next_line() {
+            found.push((number, String::from_utf8_lossy(line).into_owned()));
+        }
+        found
+    }
+
+    #[test]
+    fn every_line_end_counts_once() {
+        let expected: Vec<_> =
+            [(1, "a"), (2, ""), (3, "b")].map(|(n, line)| (n, line.to_owned())).into();
+        for text in ["a\n\nb", "a\r\n\r\nb\r\n", "a\r\rb\r", "a\n\rb\n"] {
+            assert_eq!(lines(text), expected, "{text:?}");
+        }
+        assert!(lines("").is_empty());
+    }
+
+    #[test]
+    fn continued_lines_keep_the_first_number() {
+        let text = "f 1 \\\n 2 \\ \r\n3\nv 0\n# C:\\dir\\\nlast\\";
+        let expected =
+            [(1, "f 1   2  3"), (4, "v 0"), (5, "# C:\\dir\\"), (6, "last ")].map(|(n, l)| (n, l));
+        let found = lines(text);
+        let found: Vec<_> = found.iter().map(|(n, l)| (*n, l.as_str())).collect();
+        assert_eq!(found, expected);
+    }
+}

@@ -1,0 +1,87 @@
+//! The program itself, on files.
+
+use std::process::{Command, Output};
+
+use super::file;
+
+fn whitted(args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_whitted")).args(args).output().expect("runs")
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// Oracle: the built-in scene itself.
+#[test]
+fn the_printed_assignment_renders_alike() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let text = whitted(&["scenes", "--show", "assignment"]).stdout;
+    std::fs::write(path("copy.toml"), text).expect("written");
+    let flags = ["--size", "90x90", "--quiet", "-o"];
+    let picture = |scene: &str, name: &str| {
+        let output = whitted(&[&["render", scene], &flags[..], &[&path(name)]].concat());
+        assert!(output.status.success(), "{}", stderr(&output));
+        std::fs::read(path(name)).expect("a picture")
+    };
+    assert!(picture("assignment", "a.png") == picture(&path("copy.toml"), "b.png"));
+}
+
+#[test]
+fn a_model_renders_by_itself_and_in_a_scene() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out.png").display().to_string();
+    let model = file("models/bread/bread.obj").display().to_string();
+    for args in [
+        vec!["render", &model, "--size", "20x20", "-o", &out, "--strict"],
+        vec!["render", &model, "--size", "20x20", "-o", &out, "--up", "z", "--fov", "20"],
+        vec!["render", "--obj", &model, "--size", "20x20", "-o", &out],
+        vec!["render", "--obj", &format!("{model}@1,-15,-80*5"), "--size", "20x20", "-o", &out],
+    ] {
+        let output = whitted(&args);
+        assert!(output.status.success(), "{args:?}: {}", stderr(&output));
+    }
+}
+
+#[test]
+fn codes_tell_what_was_wrong() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out.png").display().to_string();
+    let broken = |name: &str| file("tests/broken").join(name).display().to_string();
+    for (scene, strict, code) in [
+        ("obj/duplicate_face.obj", false, 0),
+        ("obj/duplicate_face.obj", true, 4),
+        ("obj/index_zero.obj", false, 3),
+        ("toml/unknown_key.toml", false, 3),
+        ("nff/cut_sphere.nff", false, 3),
+        ("nff/zero_radius.nff", true, 4),
+        ("nothing.scene", false, 2),
+    ] {
+        let path = broken(scene);
+        let mut args = vec!["render", &path, "--size", "8x8", "--aa", "none", "-o", &out];
+        args.extend(strict.then_some("--strict"));
+        assert_eq!(whitted(&args).status.code(), Some(code), "{scene}");
+    }
+    let output = whitted(&["render", &broken("toml/unknown_nested_key.toml"), "-o", &out]);
+    let text = stderr(&output);
+    assert!(text.contains(":14:38: unknown key `raduis`; did you mean `radius`?\n"), "{text}");
+    assert!(text.contains(&format!("\n     | {:37}^^^^^^", "")), "{text}");
+}
+
+#[test]
+fn the_classic_rules_leave_no_choice() {
+    let scene = file("tests/formats/spd/tetra.nff").display().to_string();
+    let output = whitted(&["render", &scene, "--rules", "classic", "--size", "8x8"]);
+    assert_eq!(output.status.code(), Some(2));
+}
+
+#[test]
+fn inspection_is_json() {
+    let model = file("models/chicken/chicken.obj").display().to_string();
+    let output = whitted(&["inspect", &model, "--json"]);
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!((json["triangles"].as_u64(), json["closed"].as_bool()), (Some(2724), Some(false)));
+    assert_eq!(json["textures"][0]["found"], true);
+    assert_eq!(json["bounds"][1].as_array().map(Vec::len), Some(3));
+}
