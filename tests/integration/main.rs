@@ -4,6 +4,7 @@
 
 mod determinism;
 mod extremes;
+mod leaks;
 mod numerics;
 mod objects;
 mod references;
