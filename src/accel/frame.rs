@@ -91,6 +91,11 @@ impl Frame {
         (p - self.center) * self.scale
     }
 
+    /// A vector in this frame.
+    pub(super) fn vector(&self, v: DVec3) -> DVec3 {
+        v * self.scale
+    }
+
     /// By how much the boxes are enlarged.
     pub(super) fn pad(&self) -> f64 {
         self.pad

@@ -4,6 +4,7 @@
 //! hit is decided by the shapes themselves in double precision, so that every answer is, to the bit, the one of
 //! [`brute`], whatever the machine's instructions.
 
+mod beam;
 pub mod brute;
 mod build;
 mod collapse;
@@ -12,6 +13,7 @@ mod extreme;
 mod frame;
 mod leaf;
 mod node;
+mod packet;
 mod query;
 mod simd;
 #[cfg(target_arch = "x86_64")]
@@ -30,6 +32,7 @@ use glam::DVec3;
 use crate::geometry::{Bounds, Crossing, Hit, Ray, Shape};
 use build::Division;
 use crossed::Crossed;
+use packet::{BlockedPacket, NearestPacket};
 use query::Nearest;
 pub use simd::Isa;
 use simd::{Kernel, Simd, dispatch};
@@ -156,8 +159,12 @@ impl Accel {
 
     /// The nearest hits of up to 64 rays of one origin, as [`Accel::nearest`] without an end finds them.
     pub fn nearest_packet(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
-        for (ray, hit) in rays.iter().zip(hits) {
-            *hit = self.nearest(ray, f64::INFINITY);
+        for (rays, hits) in rays.chunks(packet::RAYS).zip(hits.chunks_mut(packet::RAYS)) {
+            if !dispatch(self.isa, NearestPacket { accel: self, rays, hits }) {
+                for (ray, hit) in rays.iter().zip(hits) {
+                    *hit = self.nearest(ray, f64::INFINITY);
+                }
+            }
         }
     }
 
@@ -166,11 +173,22 @@ impl Accel {
     pub fn is_blocked_packet(
         &self,
         rays: &[Ray],
-        _target: DVec3,
+        target: DVec3,
         opaque: impl Fn(u32) -> bool,
         mut visit: impl FnMut(u32, u32, Crossing) -> ControlFlow<()>,
         blocked: &mut [bool],
     ) {
+        let packet = BlockedPacket {
+            accel: self,
+            rays,
+            target,
+            opaque: &opaque,
+            visit: &mut visit,
+            blocked,
+        };
+        if dispatch(self.isa, packet) {
+            return;
+        }
         for ((ray, blocked), index) in rays.iter().zip(blocked).zip(0..) {
             *blocked = self.is_blocked(ray, 1.0, &opaque, |primitive, crossing| {
                 visit(index, primitive, crossing)

@@ -13,8 +13,9 @@ use glam::{DVec3, Vec3};
 
 use super::{
     Accel, Isa,
+    crossed::Visit,
     frame::{Entry, TreeRay},
-    leaf::{LeafRay, Spheres, Triangles, cross, dot, load, sub},
+    leaf::{LeafRay, Spheres, Triangles, cross, dot, load, splat, sub},
     node::Content,
     simd::{Kernel, Lanes, Simd, dispatch},
     tree::Tree,
@@ -286,27 +287,30 @@ impl NaiveShape {
 impl Spheres {
     /// The two roots of each sphere, which are NaN where it is missed.
     #[inline(always)]
-    fn naive<S: Simd>(&self, simd: S, ray: &LeafRay<S>) -> [S::F; 2] {
-        let f = sub(simd, load(simd, &self.center), ray.origin);
-        let b = dot(simd, f, ray.dir);
+    fn naive<S: Simd>(&self, simd: S, ray: &LeafRay) -> [S::F; 2] {
+        let (origin, dir) = (splat(simd, ray.origin), splat(simd, ray.dir));
+        let inverse = simd.splat(ray.inverse);
+        let f = sub(simd, load(simd, &self.center), origin);
+        let b = dot(simd, f, dir);
         let c = simd.sub(dot(simd, f, f), simd.load(&self.outer));
-        let a = dot(simd, ray.dir, ray.dir);
+        let a = dot(simd, dir, dir);
         let root = simd.sqrt(simd.mul_sub(b, b, simd.mul(a, c)));
-        [simd.mul(simd.sub(b, root), ray.inverse), simd.mul(simd.add(b, root), ray.inverse)]
+        [simd.mul(simd.sub(b, root), inverse), simd.mul(simd.add(b, root), inverse)]
     }
 }
 
 impl Triangles {
     /// The parameter for each triangle, and which are hit.
     #[inline(always)]
-    fn naive<S: Simd>(&self, simd: S, ray: &LeafRay<S>) -> (u32, S::F) {
+    fn naive<S: Simd>(&self, simd: S, ray: &LeafRay) -> (u32, S::F) {
+        let (origin, dir) = (splat(simd, ray.origin), splat(simd, ray.dir));
         let (edge1, edge2) = (load(simd, &self.edge1), load(simd, &self.edge2));
-        let p = cross(simd, ray.dir, edge2);
+        let p = cross(simd, dir, edge2);
         let inverse = simd.div(simd.splat(1.0), dot(simd, edge1, p));
-        let s = sub(simd, ray.origin, load(simd, &self.corner));
+        let s = sub(simd, origin, load(simd, &self.corner));
         let q = cross(simd, s, edge1);
         let u = simd.mul(dot(simd, s, p), inverse);
-        let v = simd.mul(dot(simd, ray.dir, q), inverse);
+        let v = simd.mul(dot(simd, dir, q), inverse);
         let zero = simd.splat(0.0);
         let hit = simd.le(zero, u) & simd.le(zero, v) & simd.le(simd.add(u, v), simd.splat(1.0));
         (hit & ((1 << self.count) - 1), simd.mul(dot(simd, edge2, q), inverse))
@@ -328,19 +332,19 @@ trait Take {
 }
 
 /// The crossings of a ray with leaves, or with what is outside the tree.
-struct Search<'a, S: Simd, T> {
+struct Search<'a, T> {
     accel: &'a Accel,
     tree: &'a Tree,
     origin: Vec3,
     dir: Vec3,
-    leaf_ray: LeafRay<S>,
+    leaf_ray: LeafRay,
     rate: f32,
     arrival: f32,
     start: f32,
     taker: T,
 }
 
-impl<S: Simd, T: Take> Search<'_, S, T> {
+impl<T: Take> Search<'_, T> {
     #[inline(always)]
     fn one(&mut self, place: usize) -> bool {
         let found = self.accel.naive[place].crossings(self.origin, self.dir);
@@ -367,12 +371,12 @@ impl<S: Simd, T: Take> Search<'_, S, T> {
     }
 
     #[inline(always)]
-    fn ahead(&self, simd: S, t: S::F) -> u32 {
+    fn ahead<S: Simd>(&self, simd: S, t: S::F) -> u32 {
         simd.le(simd.splat(self.start), t) & simd.le(t, simd.splat(self.taker.limit()))
     }
 }
 
-impl<S: Simd, T: Take> Visitor<S> for Search<'_, S, T> {
+impl<S: Simd, T: Take> Visitor<S> for Search<'_, T> {
     #[inline(always)]
     fn limit(&self) -> f32 {
         self.taker.limit()
@@ -411,7 +415,7 @@ fn search<S: Simd, const SORTED: bool, T: Take>(
 ) -> Option<(T, TreeRay)> {
     let tree = accel.tree.as_ref()?;
     let Entry::Ray(tree_ray) = tree.frame.enter(ray) else { return None };
-    let leaf_ray = LeafRay::new(simd, &tree_ray, 1.0);
+    let leaf_ray = LeafRay::new(&tree_ray, 1.0);
     let (rate, arrival) = (tree_ray.rate as f32, tree_ray.arrival as f32);
     let start = EPSILON * rate - arrival;
     let (origin, dir) = (ray.origin.as_vec3(), ray.dir.as_vec3());
@@ -469,7 +473,7 @@ struct Crossed<'a, B, V> {
 impl<B, V> Take for Crossed<'_, B, V>
 where
     B: Fn(u32) -> bool,
-    V: FnMut(u32, Crossing) -> ControlFlow<()>,
+    V: Visit,
 {
     #[inline(always)]
     fn limit(&self) -> f32 {
@@ -481,7 +485,7 @@ where
         let number = self.accel.numbers[place as usize];
         let t = (f64::from(t) + self.arrival) / self.rate;
         self.stopped =
-            (self.opaque)(number) || (self.visit)(number, Crossing { t, face }).is_break();
+            (self.opaque)(number) || self.visit.visit(number, Crossing { t, face }).is_break();
         self.stopped
     }
 }
@@ -494,7 +498,7 @@ pub(super) fn is_blocked<S: Simd>(
     ray: &Ray,
     end: f64,
     opaque: impl Fn(u32) -> bool,
-    visit: impl FnMut(u32, Crossing) -> ControlFlow<()>,
+    visit: impl Visit,
 ) -> bool {
     let make = |tree_ray: &TreeRay| {
         let (limit, rate, arrival) = (tree_ray.end_below(end), tree_ray.rate, tree_ray.arrival);
