@@ -55,12 +55,17 @@ fn main() -> std::io::Result<()> {
     let after_spheres = rows.iter().filter(|row| row.primitive == Primitive::Sphere).count();
     rows.insert(after_spheres, score::leaving());
     print_rows(&rows);
+    let leaks = score::leaks();
+    println!(
+        "Rays that get out of a closed mesh, in per cent: {:?}\n",
+        leaks.map(|share| 100.0 * share)
+    );
 
     let frames = if quick { vec![] } else { frames::frames() };
     print_frames(&frames, &fused);
 
     std::fs::write(format!("{DOCS}/precision.svg"), plot::plot(&fused, &rows))?;
-    std::fs::write(format!("{DOCS}/precision.csv"), csv(&fused, &calls, &rows, &frames))
+    std::fs::write(format!("{DOCS}/precision.csv"), csv(&fused, &calls, &rows, leaks, &frames))
 }
 
 fn print_times(fused: &[Times], calls: &[Times]) {
@@ -142,7 +147,13 @@ fn shares(frame: &Frame, times: &[Times]) -> [f64; 4] {
     })
 }
 
-fn csv(fused: &[Times], calls: &[Times], rows: &[Row], frames: &[Frame]) -> String {
+fn csv(
+    fused: &[Times],
+    calls: &[Times],
+    rows: &[Row],
+    leaks: [f64; 4],
+    frames: &[Frame],
+) -> String {
     let mut out =
         String::from("measure,subject,family,f32 naive,f64 naive,f32 robust,f64 robust\n");
     let mut row = |measure: &str, subject: &str, family: &str, values: [String; 4]| {
@@ -158,6 +169,8 @@ fn csv(fused: &[Times], calls: &[Times], rows: &[Row], frames: &[Frame]) -> Stri
         row("first wrong", name, r.name, r.scores.map(|s| s.wrong.to_string()));
         row("first K above 16", name, r.name, r.scores.map(|s| s.imprecise.to_string()));
     }
+    let family = "closed mesh, rays at edges and vertices";
+    row("share of leaks", "triangle", family, leaks.map(|share| format!("{share:.5}")));
     for frame in frames {
         let shares = shares(frame, fused).map(|share| format!("{share:.4}"));
         row("share of the frame", &format!("\"{}\"", frame.name), "", shares);

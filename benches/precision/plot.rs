@@ -44,11 +44,13 @@ fn line(svg: &mut String, from: (f64, f64), to: (f64, f64), style: &str) {
         .expect("a string");
 }
 
-/// The families that count as severities in decades.
-fn place(reach: Reach) -> i32 {
+/// Where a form's reach is drawn, and whether as a failure: coarse inputs end the reach of single precision, but are the
+/// same question to double precision, whose every ray is as coarse.
+fn place(form: Form, reach: Reach) -> (i32, bool) {
     match reach {
-        Reach::To(k) => k.abs().min(LAST + 1),
-        Reach::Limit(_) | Reach::All => NEVER,
+        Reach::To(k) => (k.abs().min(LAST + 1), true),
+        Reach::Limit(k) if form.is_single() => (k.abs().min(LAST + 1), false),
+        Reach::Limit(_) | Reach::All => (NEVER, true),
     }
 }
 
@@ -86,16 +88,20 @@ fn panel(svg: &mut String, times: &Times, rows: &[&Row], left: f64, top: f64) {
         let (color, y) = (COLORS[form as usize], panel.y(times.nanoseconds[form as usize]));
         let style = format!("stroke='{color}' stroke-opacity='0.5' stroke-width='1.5'");
         line(svg, (panel.x(0.0), y), (never, y), &style);
-        for severity in 0..=NEVER {
-            let count = rows
-                .iter()
-                .filter(|row| place(row.scores[form as usize].wrong) == severity)
-                .count();
+        for (severity, filled) in (0..=NEVER).flat_map(|k| [(k, true), (k, false)]) {
+            let here =
+                |row: &&&Row| place(form, row.scores[form as usize].wrong) == (severity, filled);
+            let count = rows.iter().filter(here).count();
             if count > 0 {
-                let (x, radius) = (panel.x(f64::from(severity)), 3.5 * (count as f64).sqrt());
+                // Side by side where all forms may end up.
+                let aside =
+                    if severity == NEVER { 0.5 * (form as usize as f64) - 0.75 } else { 0.0 };
+                let (x, radius) =
+                    (panel.x(f64::from(severity) + aside), 3.5 * (count as f64).sqrt());
+                let fill = if filled { color } else { "white" };
                 writeln!(
                     svg,
-                    "<circle cx='{x:.1}' cy='{y:.1}' r='{radius:.1}' fill='{color}' fill-opacity='0.75'/>"
+                    "<circle cx='{x:.1}' cy='{y:.1}' r='{radius:.1}' fill='{fill}' fill-opacity='0.75' stroke='{color}'/>"
                 )
                 .expect("a string");
             }
@@ -108,7 +114,7 @@ pub(crate) fn plot(times: &[Times], rows: &[Row]) -> String {
     let (width, height) = (2.0 * WIDTH, 3.0 * HEIGHT);
     let mut svg = format!(
         "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {width} {height}' width='{width}' height='{height}' \
-         font-family='sans-serif'>\n<rect width='100%' height='100%' fill='white'/>\n"
+         font-family='sans-serif' stroke='none'>\n<rect width='100%' height='100%' fill='white'/>\n"
     );
     for (k, primitive) in Primitive::ALL.into_iter().enumerate() {
         let counts = |row: &&Row| row.primitive == primitive && !row.name.starts_with("scale");
@@ -122,10 +128,8 @@ pub(crate) fn plot(times: &[Times], rows: &[Row]) -> String {
         writeln!(svg, "<circle cx='{x}' cy='{y}' r='7' fill='{color}'/>").expect("a string");
         text(&mut svg, (x + 16.0, y + 4.0), "start", 13, form.name());
     }
-    let notes = [
-        "\"never\" includes families whose single-precision",
-        "inputs become too coarse for an answer first",
-    ];
+    let notes =
+        ["hollow: from there, inputs rounded to single", "precision are too coarse for an answer"];
     for (k, note) in (0..).zip(notes) {
         text(&mut svg, (x, y + 115.0 + 14.0 * f64::from(k)), "start", 11, note);
     }

@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display, Formatter};
 
-use glam::DVec3;
+use glam::{DQuat, DVec3, EulerRot};
 use rayon::prelude::*;
 use whitted::geometry::{Ray, Shape};
 
@@ -14,6 +14,9 @@ use super::numerics::subject::Subject;
 
 /// Rays scored for each severity.
 const RAYS: usize = 1000;
+
+/// Rays aimed at the edges and vertices of a mesh.
+const LEAK_RAYS: usize = 100_000;
 
 /// The largest K that counts as precise: what the inputs' own rounding explains, and a little more.
 const K_MAX: f64 = 16.0;
@@ -109,7 +112,9 @@ impl Tally {
                 if k_99 > K_MAX {
                     self.imprecise.get_or_insert(Reach::To(severity));
                 }
-                if self.is_open() {
+                if let Some(wrong) = self.wrong {
+                    self.imprecise.get_or_insert(wrong);
+                } else {
                     self.k_max = self.ks.iter().copied().fold(self.k_max, f64::max);
                 }
             }
@@ -283,4 +288,38 @@ fn leave(form: Form, subject: &Subject, k: i32, random: &mut Random) -> (f64, Op
             (f64::from(t), chord(q.as_dvec3(), dir))
         }
     }
+}
+
+/// The share of rays that get out of a closed mesh through its edges and vertices, which nothing may.
+///
+/// The mesh is a cube of twelve triangles, turned so that no face is square to an axis.
+pub(crate) fn leaks() -> [f64; 4] {
+    let turn = DQuat::from_euler(EulerRot::XYZ, 0.3, 0.5, 0.7);
+    let corner = |k: usize| {
+        let sign = |bit: usize| if k >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        rounded(turn * DVec3::new(sign(0), sign(1), sign(2)))
+    };
+    let squares =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let mesh: Vec<(Subject, Shape)> = squares
+        .iter()
+        .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+        .map(|face| Subject::Triangle { vertices: face.map(corner) })
+        .map(|subject| (subject.clone(), subject.shape()))
+        .collect();
+    let mut random = Random::new(14);
+    let mut out = [0; 4];
+    for _ in 0..LEAK_RAYS {
+        let (subject, _) = &mesh[random.below(mesh.len())];
+        let Subject::Triangle { vertices: [a, b, _] } = subject else { unreachable!("a triangle") };
+        let along = if random.below(4) == 0 { 0.0 } else { random.unit() };
+        let origin = rounded(random.in_cube() * 0.5);
+        let ray = Ray::new(origin, rounded(*a + (*b - *a) * along - origin));
+        for (form, out) in Form::ALL.into_iter().zip(&mut out) {
+            let met =
+                |(subject, shape): &(Subject, Shape)| answer(form, subject, shape, &ray) > 0.0;
+            *out += usize::from(!mesh.iter().any(met));
+        }
+    }
+    out.map(|out| out as f64 / LEAK_RAYS as f64)
 }

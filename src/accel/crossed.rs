@@ -45,10 +45,6 @@ where
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> bool {
         let Self { accel, ray, end, opaque, visit } = self;
-        #[cfg(feature = "leaf-study")]
-        if super::study::is_naive() {
-            return super::study::is_blocked(simd, accel, ray, end, opaque, visit);
-        }
         let mut test = Test { accel, ray, end, opaque, visit };
         for place in accel.outside() {
             if test.test(simd, place) {
@@ -96,9 +92,7 @@ where
     #[inline(always)]
     pub(super) fn test<S: Simd>(&mut self, simd: S, place: usize) -> bool {
         let number = self.accel.numbers[place];
-        #[cfg(feature = "leaf-study")]
-        super::study::count_test(&self.accel.shapes[place]);
-        let [first, second] = simd.crossings(&self.accel.shapes[place], self.ray, number);
+        let [first, second] = self.accel.crossings(simd, self.ray, place);
         self.crosses(number, first) || self.crosses(number, second)
     }
 
@@ -156,7 +150,17 @@ where
     #[inline(always)]
     fn leaf(&mut self, simd: S, leaf: Content) -> bool {
         #[cfg(feature = "leaf-study")]
-        super::study::count_leaf(leaf);
+        match super::study::leaf(simd, self.tree, leaf, &self.leaf_ray, self.limit) {
+            super::study::Textbook::Unwanted => {}
+            super::study::Textbook::Missed => return false,
+            super::study::Textbook::Hit(found) => {
+                self.stopped = found.for_each(|place, t| {
+                    let number = self.test.accel.numbers[place as usize];
+                    self.test.crosses(number, self.leaf_ray.crossing(t))
+                });
+                return self.stopped;
+            }
+        }
         self.stopped = match leaf {
             Content::Spheres(k) => {
                 let block = &self.tree.spheres[k];

@@ -40,6 +40,9 @@ pub(super) struct LeafRay {
     length: f32,
     /// The end of the ray, rounded down.
     end: f32,
+    /// The ray itself.
+    #[cfg(feature = "leaf-study")]
+    pub(super) ray: TreeRay,
 }
 
 impl LeafRay {
@@ -53,6 +56,8 @@ impl LeafRay {
             inverse: 1.0 / square,
             length: square.sqrt(),
             end: ray.end_below(end),
+            #[cfg(feature = "leaf-study")]
+            ray: *ray,
         }
     }
 }

@@ -29,7 +29,7 @@ use std::ops::{ControlFlow, Range};
 
 use glam::DVec3;
 
-use crate::geometry::{Bounds, Crossing, Hit, Ray, Shape};
+use crate::geometry::{Bounds, Crossing, Hit, Ray, Shape, hit::Crossings};
 use build::Division;
 use crossed::Crossed;
 use packet::{BlockedPacket, NearestPacket};
@@ -218,6 +218,16 @@ impl Accel {
         visit: impl FnMut(u32, Crossing) -> ControlFlow<()>,
     ) -> bool {
         dispatch(self.isa, Crossed { accel: self, ray, end, opaque, visit })
+    }
+
+    /// The crossings of `ray` with the primitive in `place`.
+    #[inline(always)]
+    fn crossings<S: Simd>(&self, simd: S, ray: &Ray, place: usize) -> Crossings {
+        #[cfg(feature = "leaf-study")]
+        if let Some(crossings) = study::crossings(self, ray, place) {
+            return crossings;
+        }
+        simd.crossings(&self.shapes[place], ray, self.numbers[place])
     }
 
     /// The place of the primitive that `ray` leaves, if it does.

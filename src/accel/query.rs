@@ -41,9 +41,7 @@ impl Best {
     #[inline(always)]
     pub(super) fn test<S: Simd>(&mut self, simd: S, accel: &Accel, ray: &Ray, place: usize) {
         let number = accel.numbers[place];
-        #[cfg(feature = "leaf-study")]
-        super::study::count_test(&accel.shapes[place]);
-        let [first, second] = simd.crossings(&accel.shapes[place], ray, number);
+        let [first, second] = accel.crossings(simd, ray, place);
         self.offer(first, number);
         self.offer(second, number);
     }
@@ -68,10 +66,6 @@ impl Kernel for Nearest<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Option<Hit> {
         let Self { accel, ray, end } = self;
-        #[cfg(feature = "leaf-study")]
-        if super::study::is_naive() {
-            return super::study::nearest(simd, accel, ray, end);
-        }
         let mut best = Best::before(end);
         for place in accel.outside() {
             best.test(simd, accel, ray, place);
@@ -176,6 +170,12 @@ impl<'a> Search<'a> {
     #[inline(always)]
     pub(super) fn finish<S: Simd>(mut self, simd: S) -> Best {
         if self.pending.place != u32::MAX && self.pending.from <= self.limit {
+            #[cfg(feature = "leaf-study")]
+            if super::study::is_naive() {
+                let number = self.accel.numbers[self.pending.place as usize];
+                self.best.offer(self.leaf_ray.crossing(self.pending.from), number);
+                return self.best;
+            }
             self.test(simd, self.pending.place);
         }
         self.best
@@ -191,7 +191,19 @@ impl<S: Simd> Visitor<S> for Search<'_> {
     #[inline(always)]
     fn leaf(&mut self, simd: S, leaf: Content) -> bool {
         #[cfg(feature = "leaf-study")]
-        super::study::count_leaf(leaf);
+        match super::study::leaf(simd, self.tree, leaf, &self.leaf_ray, self.limit) {
+            super::study::Textbook::Unwanted => {}
+            super::study::Textbook::Missed => return false,
+            super::study::Textbook::Hit(found) => {
+                return found.for_each(|place, from| {
+                    if from < self.limit {
+                        self.pending = Pending { place, from };
+                        self.limit = from;
+                    }
+                    false
+                });
+            }
+        }
         match leaf {
             Content::Spheres(k) => {
                 let block = &self.tree.spheres[k];

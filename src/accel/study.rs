@@ -10,15 +10,12 @@ use glam::{DVec3, Vec3};
 
 use super::{
     Accel, Isa,
-    crossed::Visit,
-    frame::{Entry, TreeRay},
     leaf::{LeafRay, Spheres, Triangles, cross, dot, load, splat, sub},
     node::Content,
     simd::{Kernel, Lanes, Simd, dispatch},
     tree::Tree,
-    walk::{Visitor, walk},
 };
-use crate::geometry::{Crossing, Ends, Hit, Ray, Shape};
+use crate::geometry::{Crossing, Ends, Ray, Shape, hit::Crossings};
 
 fn single(v: DVec3) -> Vec3 {
     v.as_vec3()
@@ -67,7 +64,7 @@ fn count(kind: usize) {
 
 /// Counts the test of a shape in double precision.
 #[inline(always)]
-pub(super) fn count_test(shape: &Shape) {
+fn count_test(shape: &Shape) {
     count(match shape {
         Shape::Sphere(_) => 0,
         Shape::Cylinder(_) => 1,
@@ -80,7 +77,7 @@ pub(super) fn count_test(shape: &Shape) {
 
 /// Counts the test of a leaf in single precision.
 #[inline(always)]
-pub(super) fn count_leaf(leaf: Content) {
+fn count_leaf(leaf: Content) {
     match leaf {
         Content::Spheres(_) => count(6),
         Content::Triangles(_) => count(7),
@@ -320,186 +317,101 @@ pub(super) fn is_naive() -> bool {
     leaves_are(Leaves::Naive)
 }
 
-/// What is done with a crossing: its `t` in the tree's frame (or the world's, outside the tree), place and face. Returns
-/// whether to stop.
-trait Take {
-    /// What is beyond is of no interest.
-    fn limit(&self) -> f32;
-    fn take(&mut self, t: f32, place: u32, face: u8) -> bool;
-}
-
-/// The crossings of a ray with leaves, or with what is outside the tree.
-struct Search<'a, T> {
-    accel: &'a Accel,
-    tree: &'a Tree,
-    origin: Vec3,
-    dir: Vec3,
-    leaf_ray: LeafRay,
-    rate: f32,
-    arrival: f32,
-    start: f32,
-    taker: T,
-}
-
-impl<T: Take> Search<'_, T> {
-    #[inline(always)]
-    fn one(&mut self, place: usize) -> bool {
-        let found = self.accel.naive[place].crossings(self.origin, self.dir);
-        for (t, face) in found {
-            let t = t * self.rate - self.arrival;
-            if t > self.start && t < self.taker.limit() && self.taker.take(t, place as u32, face) {
-                return true;
-            }
-        }
-        false
-    }
-
-    #[inline(always)]
-    fn lanes(&mut self, mut hit: u32, t: Lanes, first: u32) -> bool {
-        while hit != 0 {
-            let lane = hit.trailing_zeros() & 7;
-            hit &= hit - 1;
-            let t = t.0[lane as usize];
-            if t < self.taker.limit() && self.taker.take(t, first + lane, 0) {
-                return true;
-            }
-        }
-        false
-    }
-
-    #[inline(always)]
-    fn ahead<S: Simd>(&self, simd: S, t: S::F) -> u32 {
-        simd.le(simd.splat(self.start), t) & simd.le(t, simd.splat(self.taker.limit()))
-    }
-}
-
-impl<S: Simd, T: Take> Visitor<S> for Search<'_, T> {
-    #[inline(always)]
-    fn limit(&self) -> f32 {
-        self.taker.limit()
-    }
-
-    #[inline(always)]
-    fn leaf(&mut self, simd: S, leaf: Content) -> bool {
-        let tree = self.tree;
-        match leaf {
-            Content::Spheres(k) => {
-                let block = &tree.spheres[k];
-                let [t0, t1] = block.naive(simd, &self.leaf_ray);
-                let (near, far) = (self.ahead(simd, t0), self.ahead(simd, t1));
-                near != 0 && self.lanes(near, simd.store(t0), block.first)
-                    || far != 0 && self.lanes(far, simd.store(t1), block.first)
-            }
-            Content::Triangles(k) => {
-                let block = &tree.triangles[k];
-                let (hit, t) = block.naive(simd, &self.leaf_ray);
-                let hit = hit & self.ahead(simd, t);
-                hit != 0 && self.lanes(hit, simd.store(t), block.first)
-            }
-            Content::One(place) => self.one(place),
-            Content::Node(_) => false,
-        }
-    }
-}
-
-/// Looks through everything; the parameters of `taker` are the tree's.
+/// The textbook's crossings of the shape in `place`, where they are wanted; else that is counted.
 #[inline(always)]
-fn search<S: Simd, const SORTED: bool, T: Take>(
+pub(super) fn crossings(accel: &Accel, ray: &Ray, place: usize) -> Option<Crossings> {
+    if !is_naive() {
+        count_test(&accel.shapes[place]);
+        return None;
+    }
+    let found = accel.naive[place].crossings(ray.origin.as_vec3(), ray.dir.as_vec3());
+    Some(found.map(
+        |(t, face)| {
+            if t > EPSILON { Crossing { t: f64::from(t), face } } else { Crossing::NONE }
+        },
+    ))
+}
+
+/// The hits of a ray in a leaf: the place of the first primitive, which of them are hit first and second, and where.
+pub(super) struct Found {
+    first: u32,
+    hits: [u32; 2],
+    t: [Lanes; 2],
+}
+
+impl Found {
+    /// Calls `take(place, t)`, `t` being the tree's, for every hit, until it returns that it stops; returns whether it did.
+    #[inline(always)]
+    pub(super) fn for_each(&self, mut take: impl FnMut(u32, f32) -> bool) -> bool {
+        for (mut hits, t) in self.hits.into_iter().zip(&self.t) {
+            while hits != 0 {
+                let lane = hits.trailing_zeros() & 7;
+                hits &= hits - 1;
+                if take(self.first + lane, t.0[lane as usize]) {
+                    return true;
+                }
+            }
+        }
+        false
+    }
+}
+
+impl LeafRay {
+    /// The crossing at the tree's `t`.
+    #[inline(always)]
+    pub(super) fn crossing(&self, t: f32) -> Crossing {
+        Crossing::at((f64::from(t) + self.ray.arrival) / self.ray.rate)
+    }
+}
+
+/// What the textbook says of a leaf.
+pub(super) enum Textbook {
+    /// It is not asked; that is counted.
+    Unwanted,
+    /// Nothing is hit.
+    Missed,
+    /// Something is.
+    Hit(Found),
+}
+
+/// The textbook's hits in a block of primitives.
+#[inline(always)]
+pub(super) fn leaf<S: Simd>(
     simd: S,
-    accel: &Accel,
-    ray: &Ray,
-    make: impl FnOnce(&TreeRay) -> T,
-) -> Option<(T, TreeRay)> {
-    let tree = accel.tree.as_ref()?;
-    let Entry::Ray(tree_ray) = tree.frame.enter(ray) else { return None };
-    let leaf_ray = LeafRay::new(&tree_ray, 1.0);
-    let (rate, arrival) = (tree_ray.rate as f32, tree_ray.arrival as f32);
-    let start = EPSILON * rate - arrival;
-    let (origin, dir) = (ray.origin.as_vec3(), ray.dir.as_vec3());
-    let taker = make(&tree_ray);
-    let mut search = Search { accel, tree, origin, dir, leaf_ray, rate, arrival, start, taker };
-    for place in accel.outside() {
-        if search.one(place) {
-            return Some((search.taker, tree_ray));
-        }
-    }
-    walk::<S, SORTED>(simd, &tree.nodes, tree.root, &tree_ray, &mut search);
-    Some((search.taker, tree_ray))
-}
-
-struct Nearest {
-    t: f32,
-    place: u32,
-    face: u8,
-}
-
-impl Take for Nearest {
-    #[inline(always)]
-    fn limit(&self) -> f32 {
-        self.t
-    }
-
-    #[inline(always)]
-    fn take(&mut self, t: f32, place: u32, face: u8) -> bool {
-        *self = Self { t, place, face };
-        false
-    }
-}
-
-/// The nearest hit.
-#[inline(always)]
-pub(super) fn nearest<S: Simd>(simd: S, accel: &Accel, ray: &Ray, end: f64) -> Option<Hit> {
-    let make =
-        |tree_ray: &TreeRay| Nearest { t: tree_ray.end_above(end), place: u32::MAX, face: 0 };
-    let (found, tree_ray) = search::<S, true, _>(simd, accel, ray, make)?;
-    let t = (f64::from(found.t) + tree_ray.arrival) / tree_ray.rate;
-    let primitive = *accel.numbers.get(found.place as usize)?;
-    Some(Hit { t, primitive, face: found.face })
-}
-
-struct Crossed<'a, B, V> {
-    accel: &'a Accel,
+    tree: &Tree,
+    leaf: Content,
+    ray: &LeafRay,
     limit: f32,
-    rate: f64,
-    arrival: f64,
-    opaque: B,
-    visit: V,
-    stopped: bool,
-}
-
-impl<B, V> Take for Crossed<'_, B, V>
-where
-    B: Fn(u32) -> bool,
-    V: Visit,
-{
-    #[inline(always)]
-    fn limit(&self) -> f32 {
-        self.limit
+) -> Textbook {
+    if !is_naive() {
+        count_leaf(leaf);
+        return Textbook::Unwanted;
     }
-
-    #[inline(always)]
-    fn take(&mut self, t: f32, place: u32, face: u8) -> bool {
-        let number = self.accel.numbers[place as usize];
-        let t = (f64::from(t) + self.arrival) / self.rate;
-        self.stopped =
-            (self.opaque)(number) || self.visit.visit(number, Crossing { t, face }).is_break();
-        self.stopped
+    let start = simd.splat(EPSILON * ray.ray.rate as f32 - ray.ray.arrival as f32);
+    let limit = simd.splat(limit);
+    let ahead = |t: S::F| simd.le(start, t) & simd.le(t, limit);
+    match leaf {
+        Content::Spheres(k) => {
+            let block = &tree.spheres[k];
+            let [t0, t1] = block.naive(simd, ray);
+            // Of a NaN, which is a miss, `min` and `max` hand on the second.
+            if simd.le(simd.max(start, t0), simd.min(limit, t1)) == 0 {
+                return Textbook::Missed;
+            }
+            let hits = [ahead(t0), ahead(t1)];
+            let t = [simd.store(t0), simd.store(t1)];
+            Textbook::Hit(Found { first: block.first, hits, t })
+        }
+        Content::Triangles(k) => {
+            let block = &tree.triangles[k];
+            let (hit, t) = block.naive(simd, ray);
+            let hit = hit & ahead(t);
+            if hit == 0 {
+                return Textbook::Missed;
+            }
+            let t = simd.store(t);
+            Textbook::Hit(Found { first: block.first, hits: [hit, 0], t: [t, t] })
+        }
+        Content::One(_) | Content::Node(_) => Textbook::Unwanted,
     }
-}
-
-/// Whether something stops the ray on its way.
-#[inline(always)]
-pub(super) fn is_blocked<S: Simd>(
-    simd: S,
-    accel: &Accel,
-    ray: &Ray,
-    end: f64,
-    opaque: impl Fn(u32) -> bool,
-    visit: impl Visit,
-) -> bool {
-    let make = |tree_ray: &TreeRay| {
-        let (limit, rate, arrival) = (tree_ray.end_below(end), tree_ray.rate, tree_ray.arrival);
-        Crossed { accel, limit, rate, arrival, opaque, visit, stopped: false }
-    };
-    search::<S, false, _>(simd, accel, ray, make).is_some_and(|(taker, _)| taker.stopped)
 }
