@@ -147,6 +147,9 @@ impl<'a> Builder<'a> {
         self.first = Vec::new();
         let has_colors = !self.obj.colors.is_empty();
         let (corners, material_of, torn) = self.triangles(&materials);
+        if corners.is_empty() {
+            return Err(ModelError::NoArea { path: self.path.to_owned() });
+        }
         if torn.count > 0 {
             let message = format!(
                 "filled {} only in part, as the outline crosses itself{}",
