@@ -38,7 +38,7 @@ fn main() {
         "chess" => best(&kind, &chess, 9, first_ray),
         "chess-tobj" => best(&kind, &chess, 9, tobj_alone),
         "grid" => {
-            best(&kind, &big, 3, |path| load_model(path).expect("a model").mesh.triangles().len())
+            best(&kind, &big, 3, |path| load_model(path).expect("a model").mesh.triangles().len());
         }
         _ => best(&kind, &big, 3, tobj_alone),
     }

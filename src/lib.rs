@@ -81,6 +81,8 @@ pub mod material;
 pub mod math;
 pub mod render;
 pub mod scene;
+#[cfg(feature = "cli")]
+pub mod study;
 pub mod texture;
 pub mod trace;
 

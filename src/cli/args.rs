@@ -30,6 +30,10 @@ pub(crate) struct Args {
 pub(crate) enum Command {
     /// Render a scene to a picture
     Render(Box<RenderArgs>),
+    /// Measure what accuracy costs: tables and plots of error against time
+    Study(StudyArgs),
+    /// Measure how far two pictures are apart
+    Compare(CompareArgs),
     /// Show what a scene or model holds, what was repaired, what is missing
     Inspect(InspectArgs),
     /// List the built-in scenes, or show one
@@ -162,6 +166,57 @@ pub(crate) struct RenderArgs {
     pub(crate) quiet: bool,
 }
 
+#[derive(Debug, clap::Args)]
+pub(crate) struct CompareArgs {
+    /// A picture: PNG
+    pub(crate) a: PathBuf,
+
+    /// Another of the same size
+    pub(crate) b: PathBuf,
+
+    /// PNG to write that shows where they differ: black up to half a level, pale from 128 levels on
+    #[arg(long, value_name = "FILE")]
+    pub(crate) heatmap: Option<PathBuf>,
+
+    /// Root-mean-square difference in levels of 255 above which the exit code is 6
+    #[arg(long, value_name = "RMSE", value_parser = parse_error, allow_negative_numbers = true)]
+    pub(crate) fail_above: Option<f64>,
+
+    /// The numbers as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct StudyArgs {
+    /// Built-in scenes to study [default: assignment, and spheres of several numbers]
+    pub(crate) scenes: Vec<String>,
+
+    /// Folder for study.csv, study.json, study.md, index.html, plots and pictures
+    #[arg(short, long, value_name = "FOLDER", default_value = "study")]
+    pub(crate) output: PathBuf,
+
+    /// Small pictures and few repeats: a first impression in less than half a minute
+    #[arg(long)]
+    pub(crate) quick: bool,
+
+    /// Width and height of the pictures in pixels [default: 600x600, or 100x100 with --quick]
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    pub(crate) size: Option<[u32; 2]>,
+
+    /// Times that each render is timed, of which the median counts [default: 5, or 1 with --quick]
+    #[arg(long, value_name = "N", value_parser = parse_repeats, allow_negative_numbers = true)]
+    pub(crate) repeats: Option<u32>,
+
+    /// Threads to render with, at most 4096 [default: one per core]
+    #[arg(long, value_name = "N", value_parser = parse_threads, allow_negative_numbers = true)]
+    pub(crate) threads: Option<NonZeroUsize>,
+
+    /// Nothing on standard error but errors
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+}
+
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Rules {
     /// Those of the assignment
@@ -213,7 +268,7 @@ fn parse_size(text: &str) -> Result<[u32; 2], String> {
 
 fn parse_error(text: &str) -> Result<f64, String> {
     match text.parse() {
-        Ok(error) if error >= 0.0 && error <= 255.0 => Ok(error),
+        Ok(error) if (0.0..=255.0).contains(&error) => Ok(error),
         _ => Err("give a number of levels from 0 to 255".to_owned()),
     }
 }
@@ -250,6 +305,13 @@ fn parse_objects(text: &str) -> Result<u32, String> {
     match text.parse() {
         Ok(objects @ 1..=MOST_OBJECTS) => Ok(objects),
         _ => Err(format!("give a whole number from 1 to {MOST_OBJECTS}")),
+    }
+}
+
+fn parse_repeats(text: &str) -> Result<u32, String> {
+    match text.parse() {
+        Ok(repeats @ 1..=1000) => Ok(repeats),
+        _ => Err("give a whole number from 1 to 1000".to_owned()),
     }
 }
 

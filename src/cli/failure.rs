@@ -21,6 +21,8 @@ enum Exit {
     Scene = 3,
     /// What would be a warning is an error, as the user wished.
     Strict = 4,
+    /// Two pictures differ by more than they may.
+    OverLimit = 6,
 }
 
 /// Why a command did not do what it should; displays as one line.
@@ -34,6 +36,11 @@ impl Failure {
     /// A fault in how the command was called.
     pub(crate) fn usage(error: impl Into<anyhow::Error>) -> Self {
         Self { exit: Exit::Usage, error: error.into() }
+    }
+
+    /// Pictures that differ by more than they may.
+    pub(crate) fn over_limit(error: impl Into<anyhow::Error>) -> Self {
+        Self { exit: Exit::OverLimit, error: error.into() }
     }
 
     /// What clap found, without its usage lines, which `--help` shows better.

@@ -1,6 +1,7 @@
 //! The command line: the only code that prints, exits, or knows clap.
 
 mod args;
+mod compare;
 mod failure;
 mod inspect;
 mod memory;
@@ -9,6 +10,7 @@ mod render;
 mod scenes;
 mod stats;
 mod streams;
+mod study;
 
 use std::process::ExitCode;
 use std::time::Instant;
@@ -24,6 +26,8 @@ pub(crate) fn run() -> ExitCode {
     let done = match Args::try_parse() {
         Ok(args) => match &args.command {
             Command::Render(args) => render::run(args, started),
+            Command::Compare(args) => compare::run(args),
+            Command::Study(args) => study::run(args),
             Command::Inspect(args) => inspect::run(args),
             Command::Scenes(args) => scenes::run(args),
         },

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use image::{ImageReader, RgbImage};
 
-use super::ImageError;
+use super::{ImageError, similarity::ssim};
 
 /// The difference of two pictures in levels of 255, over all pixels and channels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +19,31 @@ pub struct Difference {
     pub worst: Worst,
     /// Share, from 0 to 1, of the pixels with a channel off by more than 8 levels.
     pub share_over_8: f64,
+}
+
+impl Difference {
+    /// The peak signal-to-noise ratio in decibels, 20 log₁₀(255/rmse); infinite for equal pictures.
+    pub fn psnr(&self) -> f64 {
+        20.0 * (255.0 / self.rmse).log10()
+    }
+}
+
+/// The structural similarity of two pictures of the same size, from -1 to 1, which only equal pictures reach.
+///
+/// # Errors
+///
+/// As [`Difference::between`].
+pub fn structural_similarity(a: &RgbImage, b: &RgbImage) -> Result<f64, ImageError> {
+    Difference::between(a, b).map(|_| ssim(a, b))
+}
+
+/// The largest channel difference of each pixel in levels of 255, row by row; of pictures of the same size.
+pub fn channel_differences(a: &RgbImage, b: &RgbImage) -> Vec<f32> {
+    let largest = |(a, b): (&image::Rgb<u8>, &image::Rgb<u8>)| {
+        let differences = a.0.iter().zip(&b.0).map(|(a, b)| a.abs_diff(*b));
+        f32::from(differences.max().unwrap_or(0))
+    };
+    a.pixels().zip(b.pixels()).map(largest).collect()
 }
 
 /// The pixel where two pictures differ most.
@@ -129,6 +154,31 @@ mod tests {
         let opposite = Difference::between(&black, &white).expect("same size");
         let worst = Worst { levels: 255, x: 0, y: 0 };
         assert_eq!(opposite, Difference { rmse: 255.0, mean: 255.0, worst, share_over_8: 1.0 });
+    }
+
+    /// Oracle: limits that follow from the definition, and a value from an independent program for constant pictures,
+    /// (2·100·120 + c₁)/(100² + 120² + c₁).
+    #[test]
+    fn similarity_is_one_for_equal_pictures_only() {
+        let wave = |phase: u32| {
+            RgbImage::from_fn(40, 30, |x, y| {
+                Rgb([(127.0 + 100.0 * f64::from(x + phase + y).sin()) as u8; 3])
+            })
+        };
+        let ssim = |a: &RgbImage, b: &RgbImage| structural_similarity(a, b).expect("same size");
+        assert!((ssim(&wave(0), &wave(0)) - 1.0).abs() < 1e-12);
+        assert!(ssim(&wave(0), &wave(3)) < 0.0); // nearly half a period
+        let grey = |level| RgbImage::from_pixel(20, 9, Rgb([level; 3]));
+        let expected = (2.0 * 12_000.0 + 6.5025) / (10_000.0 + 14_400.0 + 6.5025);
+        assert!((ssim(&grey(100), &grey(120)) - expected).abs() < 1e-9);
+    }
+
+    #[test]
+    fn decibels_follow_the_error() {
+        let [black, white] = [0, 255].map(|level| RgbImage::from_pixel(3, 4, Rgb([level; 3])));
+        assert_eq!(Difference::between(&black, &white).expect("same size").psnr(), 0.0);
+        assert_eq!(Difference::between(&black, &black).expect("same size").psnr(), f64::INFINITY);
+        assert_eq!(channel_differences(&black, &white), [255.0; 12]);
     }
 
     #[test]

@@ -5,8 +5,10 @@
 
 pub mod encode;
 mod error;
+pub mod heatmap;
 pub mod metrics;
 pub mod save;
+mod similarity;
 mod tile;
 pub mod whole_file;
 

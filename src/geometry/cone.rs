@@ -116,6 +116,16 @@ impl Cone {
         [self.base, self.apex]
     }
 
+    /// The radius of the base.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Whether it is closed.
+    pub fn ends(&self) -> Ends {
+        self.ends
+    }
+
     pub(crate) fn bounds(&self) -> Bounds {
         let reach = disc_reach(self.frame.axis()) * self.radius;
         let upper = reach * (self.cut / self.height);

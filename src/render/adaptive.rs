@@ -11,55 +11,23 @@ use glam::DVec2;
 
 use super::{
     Outcome, Picture,
-    crew::{Crew, Sampler, Scratch, in_turn, trace_centers},
+    crew::{Crew, Sampler, in_turn, trace_centers},
     goal::Demand,
     look::{Window, corrected},
     plane::{Area, Plane},
+    round::{
+        Pixel, Round, Threshold, add_rays, corner_rays, is_above, is_disputed, is_picked,
+        wants_corners,
+    },
 };
 use crate::{
-    aa::{
-        Sample,
-        refined::{Refined, stages},
-        sobol::{Sequence, mix},
-    },
+    aa::{Sample, refined::stages},
     color::Rgb,
 };
 
 /// The picture's squared error, as a multiple of what its pixels add up to: pixels stop where their estimate happens to be
 /// low.
 pub(super) const STOPPED_LOW: f64 = 1.25;
-
-/// Rays that the corners of a suspect pixel cost, most being shared or not traced; and those of one that is not suspect.
-const SHARED_CORNERS: f32 = 0.6;
-const OWN_CORNERS: f32 = 1.5;
-
-/// Samples that are taken without looking at the clock.
-const AT_ONCE: usize = 512;
-
-/// When a pixel gets more rays.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Threshold {
-    /// Its squared error is at least this.
-    Error(f32),
-    /// Its squared error for each ray of the next stage is at least this.
-    PerRay(f32),
-    /// The same, for a share of the pixels, picked by hash.
-    PerRayOfSome(f32, f32),
-}
-
-/// What is known of a pixel.
-#[derive(Clone, Debug, Default)]
-struct Pixel {
-    /// 0 is the centre alone, 1 centre and corners, from 2 on with samples.
-    stage: u8,
-    /// Whether a neighbour's signature differs.
-    suspect: bool,
-    /// The estimated squared error in levels.
-    error: f32,
-    /// The contrast to the neighbours, zero unless suspect.
-    contrast: f32,
-    refined: Option<Box<Refined>>,
-}
 
 /// A picture that gets better with every call of [`Adaptive::refine`].
 pub(super) struct Adaptive {
@@ -293,165 +261,6 @@ impl Adaptive {
             errors: self.pixels.values().iter().map(|pixel| pixel.error).collect(),
             outcome: Outcome::default(),
             factor: STOPPED_LOW,
-        }
-    }
-}
-
-/// Whether the four centres around a corner saw different things.
-fn is_disputed(centers: &Plane<Sample>, x: i64, y: i64) -> bool {
-    let signature = centers.at(x, y).signature;
-    [(x - 1, y), (x, y - 1), (x - 1, y - 1)]
-        .iter()
-        .any(|&(x, y)| centers.at(x, y).signature != signature)
-}
-
-fn is_above(threshold: Threshold, error: f32, rays: f32) -> bool {
-    match threshold {
-        Threshold::Error(limit) => error > 0.0 && error >= limit,
-        Threshold::PerRay(limit) | Threshold::PerRayOfSome(limit, _) => error >= limit * rays,
-    }
-}
-
-/// Whether the threshold is for this pixel at all.
-fn is_picked(threshold: Threshold, x: i64, y: i64) -> bool {
-    match threshold {
-        Threshold::PerRayOfSome(_, share) if share < 1.0 => {
-            let hash = mix((x as u64) << 32 ^ y as u64 ^ 0xC0FF_EE00_C0FF_EE00) >> 40;
-            (hash as f32) < share * (1_u32 << 24) as f32
-        }
-        _ => true,
-    }
-}
-
-fn add_rays(spent: &AtomicU64, samples: &[Sample]) {
-    spent.fetch_add(samples.iter().map(|s| u64::from(s.rays)).sum(), Ordering::Relaxed);
-}
-
-/// Camera rays that the corners of a pixel are taken to cost.
-fn corner_rays(pixel: &Pixel) -> f32 {
-    if pixel.suspect { SHARED_CORNERS } else { OWN_CORNERS }
-}
-
-fn wants_corners(pixel: &Pixel, center: &Sample, threshold: Threshold) -> bool {
-    is_above(threshold, pixel.error, corner_rays(pixel) * center.rays as f32)
-}
-
-/// What the pixels of a tile need to know to get their next samples.
-struct Round<'a> {
-    area: &'a Area,
-    width: u32,
-    stages: &'a [u32],
-    centers: &'a Plane<Sample>,
-    corners: &'a Plane<Sample>,
-    threshold: Threshold,
-    stop: &'a (dyn Fn() -> bool + Sync),
-}
-
-impl Round<'_> {
-    /// Takes the corners into the pixels above the threshold that have only their centres.
-    fn cross(&self, tile: &Area, pixels: &mut [Pixel], changed: &mut [bool]) {
-        if self.stages.is_empty() {
-            return;
-        }
-        for (index, (x, y)) in tile.pixels().enumerate() {
-            let (pixel, center) = (&mut pixels[index], self.centers.at(x, y));
-            if pixel.stage > 0
-                || !is_picked(self.threshold, x, y)
-                || !wants_corners(pixel, center, self.threshold)
-            {
-                continue;
-            }
-            let corner = |(x, y): (i64, i64)| {
-                if !pixel.suspect || is_disputed(self.centers, x, y) {
-                    // Without rays it was to be traced, but time was up.
-                    let sample = self.corners.at(x, y);
-                    return (sample.rays > 0).then_some((sample.color, sample.signature));
-                }
-                let around = [(x, y), (x - 1, y), (x, y - 1), (x - 1, y - 1)];
-                let sum: Rgb = around.iter().map(|&(x, y)| self.centers.at(x, y).color).sum();
-                Some((sum * 0.25, center.signature))
-            };
-            let [Some(a), Some(b), Some(c), Some(d)] =
-                [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)].map(corner)
-            else {
-                continue;
-            };
-            let refined = Refined::new(center, &[a, b, c, d]);
-            pixel.error = refined.error(pixel.contrast);
-            pixel.stage = 1;
-            pixel.refined = Some(Box::new(refined));
-            changed[index] = true;
-        }
-    }
-
-    /// The samples of the sequence after the pixel's next stage, if there is one.
-    fn next_points(&self, pixel: &Pixel) -> Option<u32> {
-        (pixel.stage > 0).then(|| self.stages.get(usize::from(pixel.stage) - 1).copied()).flatten()
-    }
-
-    fn wants(&self, tile: &Area, pixel: &Pixel, index: usize) -> bool {
-        let (Some(points), Some(refined)) = (self.next_points(pixel), &pixel.refined) else {
-            return false;
-        };
-        let (x, y) = tile.pixel_at(index);
-        let rays = (points - refined.points()) * self.centers.at(x, y).rays;
-        is_picked(self.threshold, x, y) && is_above(self.threshold, pixel.error, rays as f32)
-    }
-
-    /// Gives the pixels that want them the samples of their next stage; returns whether there was time for all.
-    fn give<S: Sampler>(
-        &self,
-        tile: &Area,
-        wanting: &[usize],
-        pixels: &mut [Pixel],
-        changed: &mut [bool],
-        (sampler, scratch): (&mut S, &mut Scratch),
-        spent: &AtomicU64,
-    ) -> bool {
-        let mut rest = wanting;
-        while !rest.is_empty() {
-            if (self.stop)() {
-                return false;
-            }
-            scratch.places.clear();
-            scratch.samples.clear();
-            let mut count = 0;
-            while count < rest.len() && scratch.places.len() < AT_ONCE {
-                self.next_places(tile, rest[count], &pixels[rest[count]], &mut scratch.places);
-                count += 1;
-            }
-            sampler.sample(&scratch.places, &mut scratch.samples);
-            add_rays(spent, &scratch.samples);
-            let mut answers = scratch.samples.iter();
-            let (now, later) = rest.split_at(count);
-            for &index in now {
-                self.advance(&mut pixels[index], &mut answers);
-                changed[index] = true;
-            }
-            rest = later;
-        }
-        true
-    }
-
-    fn next_places(&self, tile: &Area, index: usize, pixel: &Pixel, places: &mut Vec<DVec2>) {
-        let (x, y) = tile.pixel_at(index);
-        debug_assert!(self.area.contains(x, y));
-        let number = y as u64 * u64::from(self.width) + x as u64;
-        let sequence = Sequence::of_pixel(number, 0);
-        let corner = DVec2::new(x as f64, y as f64);
-        let from = pixel.refined.as_ref().map_or(0, |refined| refined.points());
-        let to = self.next_points(pixel).unwrap_or(from);
-        places.extend((from..to).map(|point| corner + sequence.place(point)));
-    }
-
-    fn advance<'s>(&self, pixel: &mut Pixel, answers: &mut impl Iterator<Item = &'s Sample>) {
-        let points = self.next_points(pixel);
-        if let (Some(points), Some(refined)) = (points, &mut pixel.refined) {
-            for sample in answers.take((points - refined.points()) as usize) {
-                refined.add(sample);
-            }
-            pixel.error = refined.error(pixel.contrast);
-            pixel.stage += 1;
         }
     }
 }

@@ -4,8 +4,9 @@ use std::time::{Duration, Instant};
 
 use super::{
     Outcome,
-    adaptive::{Adaptive, Threshold},
+    adaptive::Adaptive,
     crew::{Crew, Sampler},
+    round::Threshold,
 };
 
 /// The ladder of thresholds, in squared levels for each ray: its first step, and steps to halve it.
@@ -85,7 +86,7 @@ pub(super) fn reach_time<S: Sampler>(
         };
         let share = (affordable * 0.9 / demand.at_level(level).max(1) as f64).min(1.0);
         let (before, stepping) = (adaptive.spent(), Instant::now());
-        let threshold = Threshold::PerRayOfSome(demand.threshold(level), share as f32);
+        let threshold = Threshold::PerRayOfSome(Demand::threshold(level), share as f32);
         adaptive.refine(crew, threshold, false, stop);
         let rays = adaptive.spent() - before;
         if rays > 0 {
@@ -134,7 +135,7 @@ impl Demand {
         })
     }
 
-    fn threshold(&self, level: usize) -> f32 {
+    fn threshold(level: usize) -> f32 {
         at_step(level as u32)
     }
 }
@@ -158,7 +159,7 @@ mod tests {
         assert_eq!(demand.level_for(11.0), Some(2));
         assert_eq!(demand.level_for(1e9), Some(3));
         for (level, per_ray) in [(0, 2000.0), (2, 512.0), (3, 500.0)] {
-            assert!(demand.threshold(level) <= per_ray, "{level}");
+            assert!(Demand::threshold(level) <= per_ray, "{level}");
         }
     }
 }

@@ -6,6 +6,7 @@ mod goal;
 mod look;
 mod plain;
 mod plane;
+mod round;
 
 use std::{
     num::NonZeroUsize,
@@ -28,9 +29,10 @@ use crate::{
     scene::Scene,
     trace::{self, BATCH, Tracer},
 };
-use adaptive::{Adaptive, Threshold};
+use adaptive::Adaptive;
 use crew::{Crew, Meter};
 use plane::Area;
+use round::Threshold;
 
 /// What the user may choose; the rest is the scene's.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

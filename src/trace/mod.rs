@@ -165,15 +165,12 @@ impl<'a> Tracer<'a> {
             }
         }
         for k in 0..self.batch.len() {
-            match self.hits[k] {
-                Some(hit) => {
-                    self.counts.camera_hit += u64::from(is_camera);
-                    self.meet(k, &hit);
-                }
-                None => {
-                    let signature = self.batch[k].path.background();
-                    self.gather(k, self.scene.background(), signature);
-                }
+            if let Some(hit) = self.hits[k] {
+                self.counts.camera_hit += u64::from(is_camera);
+                self.meet(k, &hit);
+            } else {
+                let signature = self.batch[k].path.background();
+                self.gather(k, self.scene.background(), signature);
             }
         }
         let scene = self.scene;

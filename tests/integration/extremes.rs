@@ -56,6 +56,7 @@ fn changed(
                 points(b);
                 *radius = length(*radius);
             }
+            ShapeDesc::Frustum { .. } => panic!("the assignment has none"),
             ShapeDesc::Quad { corner, edges } => {
                 points(corner);
                 edges.iter_mut().for_each(vector);

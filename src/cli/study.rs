@@ -1,0 +1,146 @@
+//! `whitted study`: measures what accuracy costs, and writes it down.
+
+use std::fs;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use anyhow::Context;
+use whitted::film::heatmap::{Scale, write_heatmap, write_rgb8};
+use whitted::film::{OutputFile, WholeFile};
+use whitted::scene::{Scene, SceneError, load_builtin_of};
+use whitted::study::{Plan, Portrait, Step, Study, charts, report};
+
+use super::args::StudyArgs;
+use super::failure::Failure;
+use super::streams;
+
+/// The pause between two lines about how far it is.
+const INTERVAL: Duration = Duration::from_secs(2);
+
+pub(crate) fn run(args: &StudyArgs) -> Result<(), Failure> {
+    let plan = plan(args);
+    for name in &plan.scenes {
+        load(name)?; // a mistyped name is better found now
+    }
+    let references = args.output.join("references");
+    fs::create_dir_all(&references)
+        .with_context(|| format!("{}: the folder cannot be created", references.display()))?;
+    let table = file(&args.output, "study.csv")?;
+
+    let progress = Lines::new(args.quiet);
+    let study = whitted::study::run(&plan, &load, &references, &|step| progress.report(step))?;
+    table.commit(|writer| writer.write_all(report::csv(&study.rows).as_bytes()))?;
+    write(args, &study)?;
+    if !args.quiet {
+        let seconds = progress.started.elapsed().as_secs_f64();
+        let page = args.output.join("index.html");
+        streams::note(&format!(
+            "wrote {} and its tables and plots, {seconds:.1} s",
+            page.display()
+        ));
+    }
+    Ok(())
+}
+
+fn plan(args: &StudyArgs) -> Plan {
+    let mut plan = if args.quick { Plan::quick() } else { Plan::full() };
+    if !args.scenes.is_empty() {
+        plan.scenes.clone_from(&args.scenes);
+    }
+    plan.size = args.size.unwrap_or(plan.size);
+    plan.repeats = args.repeats.unwrap_or(plan.repeats);
+    plan.threads = args.threads;
+    plan
+}
+
+/// A built-in scene; those with any number of objects have it behind a colon.
+fn load(name: &str) -> Result<Scene, SceneError> {
+    match name.split_once(':') {
+        Some((scene, objects)) => match objects.parse() {
+            Ok(objects) => load_builtin_of(scene, Some(objects)),
+            Err(_) => load_builtin_of(name, None),
+        },
+        None => load_builtin_of(name, None),
+    }
+}
+
+fn file(folder: &Path, name: &str) -> Result<WholeFile, Failure> {
+    Ok(WholeFile::prepare(folder.join(name))?)
+}
+
+/// Everything but `study.csv`.
+fn write(args: &StudyArgs, study: &Study) -> Result<(), Failure> {
+    let folder = &args.output;
+    let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let threads = args.threads.map_or(cores, std::num::NonZero::get);
+    let charts = charts::charts(&study.rows);
+    let scenes: Vec<String> = study.portraits.iter().map(|p| p.scene.clone()).collect();
+    let mut texts = vec![
+        ("study.json".to_owned(), report::json(study, threads)?),
+        ("study.md".to_owned(), report::markdown(&study.rows)),
+        ("index.html".to_owned(), report::html(&study.rows, &charts, &scenes)),
+    ];
+    texts.extend(charts.iter().map(|chart| (format!("{}.svg", chart.name), chart.svg())));
+    for (name, text) in texts {
+        file(folder, &name)?.commit(|writer| writer.write_all(text.as_bytes()))?;
+    }
+    for chart in &charts {
+        let plot = chart.pixels();
+        file(folder, &format!("{}.png", chart.name))?
+            .commit(|writer| write_rgb8(&plot.bytes, plot.width, plot.height, writer))?;
+    }
+    study.portraits.iter().try_for_each(|portrait| write_portrait(folder, portrait))
+}
+
+fn write_portrait(folder: &Path, portrait: &Portrait) -> Result<(), Failure> {
+    let Portrait { scene, film, errors } = portrait;
+    let name = report::file_name(scene);
+    let width = film.width();
+    OutputFile::prepare(folder.join(format!("{name}.png")))?.commit(film)?;
+    let rays: Vec<f32> = film.samples().iter().map(|rays| *rays as f32).collect();
+    file(folder, &format!("{name}-rays.png"))?
+        .commit(|writer| write_heatmap(&rays, width, &Scale::rays(64), writer))?;
+    file(folder, &format!("{name}-error.png"))?
+        .commit(|writer| write_heatmap(errors, width, &Scale::LEVELS, writer))?;
+    Ok(())
+}
+
+/// Says on standard error how far it is, with the time left.
+struct Lines {
+    quiet: bool,
+    started: Instant,
+    last: std::cell::Cell<Option<Instant>>,
+}
+
+impl Lines {
+    fn new(quiet: bool) -> Self {
+        Self { quiet, started: Instant::now(), last: std::cell::Cell::new(None) }
+    }
+
+    fn report(&self, step: &Step) {
+        let now = Instant::now();
+        if self.quiet || self.last.get().is_some_and(|last| now - last < INTERVAL) {
+            return;
+        }
+        self.last.set(Some(now));
+        let elapsed = self.started.elapsed().as_secs_f64();
+        let left = match step.done {
+            done if done > 0.0 => format!("{:.0} s left", elapsed * (step.total / done - 1.0)),
+            _ => "starting".to_owned(),
+        };
+        streams::note(&format!("{:3.0} %, {left}: {}", 100.0 * step.done / step.total, step.what));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scenes_may_have_a_number_of_objects() {
+        assert_eq!(load("spheres:7").expect("a scene").primitive_count(), 8);
+        for name in ["nowhere", "spheres:many", "assignment:3", "spheres:0"] {
+            assert!(load(name).is_err(), "{name}");
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! A study's tables, and the page that shows all of it.
+
+use std::fmt::Write;
+
+use super::{Row, Study, Trade, charts::Chart, svg::escaped};
+
+/// The rows as comma-separated values, a line each, under a line of names.
+pub fn csv(rows: &[Row]) -> String {
+    let mut text =
+        "trade,scene,primitives,width,height,depth,mode,seconds,rays,rays_per_pixel,measured_rmse,\
+                    estimated_rmse,worst,relative_seconds,relative_rays\n"
+            .to_owned();
+    for row in rows {
+        let Row { primitives, width, height, depth, seconds, rays, worst, .. } = row;
+        // Writing to a string does not fail. Modes hold commas.
+        let _ = writeln!(
+            text,
+            "{},\"{}\",{primitives},{width},{height},{depth},\"{}\",{seconds:.6},{rays},{:.4},{:.5},{:.5},{worst:.2},\
+             {:.4},{:.4}",
+            trade(row.trade),
+            row.scene.replace('"', "\"\""),
+            row.mode,
+            row.rays_per_pixel,
+            row.measured_rmse,
+            row.estimated_rmse,
+            row.relative_seconds,
+            row.relative_rays,
+        );
+    }
+    text
+}
+
+/// The rows as JSON, with the program's version and the threads used.
+///
+/// # Errors
+/// None, for numbers that are finite.
+pub fn json(study: &Study, threads: usize) -> serde_json::Result<String> {
+    let object = serde_json::json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "threads": threads,
+        "rows": study.rows,
+    });
+    serde_json::to_string_pretty(&object).map(|text| text + "\n")
+}
+
+/// The rows as tables for reading.
+pub fn markdown(rows: &[Row]) -> String {
+    let mut text = "# What accuracy costs\n\nErrors are root mean squares in levels of 255, against converged pictures.\n".to_owned();
+    for (kind, heading) in [
+        (Trade::Accuracy, "Error against time"),
+        (Trade::Objects, "Cost by objects"),
+        (Trade::Depth, "Error by depth of recursion"),
+        (Trade::Size, "Cost by size"),
+    ] {
+        let rows: Vec<&Row> = rows.iter().filter(|row| row.trade == kind).collect();
+        if rows.is_empty() {
+            continue;
+        }
+        let _ = write!(
+            text,
+            "\n## {heading}\n\n| scene | size | depth | mode | seconds | x none | rays x none | rays/pixel | error | estimate | \
+             est./error | worst |\n| --- | --- | ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n"
+        );
+        for row in rows {
+            let _ = writeln!(
+                text,
+                "| {} | {}x{} | {} | {} | {:.4} | {:.2} | {:.2} | {:.2} | {:.3} | {:.3} | {:.2} | {:.0} |",
+                row.scene,
+                row.width,
+                row.height,
+                row.depth,
+                row.mode,
+                row.seconds,
+                row.relative_seconds,
+                row.relative_rays,
+                row.rays_per_pixel,
+                row.measured_rmse,
+                row.estimated_rmse,
+                row.estimated_rmse / row.measured_rmse,
+                row.worst,
+            );
+        }
+    }
+    text
+}
+
+/// A page of the plots, the scenes' pictures and maps, and the tables; files are beside it under the names given.
+pub fn html(rows: &[Row], charts: &[Chart], scenes: &[String]) -> String {
+    let mut text = "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<title>What accuracy costs</title>\n\
+        <style>body { font: 16px/1.5 sans-serif; max-width: 70em; margin: 2em auto; padding: 0 1em; color: #202020 } \
+        table { border-collapse: collapse; font-size: 13px } td, th { padding: 2px 8px; border-bottom: 1px solid #ddd; \
+        text-align: right } figure { display: inline-block; margin: 8px } img { max-width: 100% } \
+        .maps img { width: 20em; image-rendering: pixelated }</style>\n<h1>What accuracy costs</h1>\n\
+        <p>Errors are root mean squares in levels of 255, against converged pictures.</p>\n"
+        .to_owned();
+    for chart in charts {
+        let (name, title) = (escaped(&chart.name), escaped(&chart.title));
+        let _ = writeln!(
+            text,
+            "<figure><a href=\"{name}.png\"><img src=\"{name}.svg\" alt=\"{title}\"></a></figure>"
+        );
+    }
+    for scene in scenes {
+        let (title, file) = (escaped(scene), escaped(&file_name(scene)));
+        let _ = writeln!(
+            text,
+            "<h2>{title}</h2>\n<div class=\"maps\">\n\
+             <figure><img src=\"{file}.png\" alt=\"picture\"><figcaption>the picture, default mode</figcaption></figure>\n\
+             <figure><img src=\"{file}-rays.png\" alt=\"rays per pixel\"><figcaption>rays per pixel, black 1, pale 64 or \
+             more</figcaption></figure>\n\
+             <figure><img src=\"{file}-error.png\" alt=\"error\"><figcaption>error, black half a level or less, pale \
+             128</figcaption></figure>\n</div>"
+        );
+    }
+    let _ = writeln!(text, "<h2>All rows</h2>\n<table>");
+    for (line, number) in csv(rows).lines().zip(0_u64..) {
+        let tag = if number == 0 { "th" } else { "td" };
+        let _ = write!(text, "<tr>");
+        for cell in cells(line) {
+            let _ = write!(text, "<{tag}>{}</{tag}>", escaped(&cell));
+        }
+        let _ = writeln!(text, "</tr>");
+    }
+    text + "</table>\n</html>\n"
+}
+
+/// A scene's name as that of its files.
+pub fn file_name(scene: &str) -> String {
+    scene.replace(|c: char| !c.is_ascii_alphanumeric(), "-")
+}
+
+fn trade(trade: Trade) -> &'static str {
+    match trade {
+        Trade::Accuracy => "accuracy",
+        Trade::Objects => "objects",
+        Trade::Depth => "depth",
+        Trade::Size => "size",
+    }
+}
+
+/// The cells of a line of comma-separated values.
+fn cells(line: &str) -> Vec<String> {
+    let (mut cells, mut quoted) = (vec![String::new()], false);
+    for letter in line.chars() {
+        match letter {
+            '"' => quoted = !quoted,
+            ',' if !quoted => cells.push(String::new()),
+            other => {
+                if let Some(cell) = cells.last_mut() {
+                    cell.push(other);
+                }
+            }
+        }
+    }
+    cells
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(mode: &str) -> Row {
+        Row {
+            trade: Trade::Accuracy,
+            scene: "spheres:10".to_owned(),
+            primitives: 11,
+            width: 4,
+            height: 3,
+            depth: 6,
+            mode: mode.to_owned(),
+            seconds: 0.25,
+            rays: 1234,
+            rays_per_pixel: 4.5,
+            measured_rmse: 2.5,
+            estimated_rmse: 3.0,
+            worst: 77.0,
+            relative_seconds: 1.5,
+            relative_rays: 2.0,
+        }
+    }
+
+    /// Oracle: as many cells in each line as names in the first.
+    #[test]
+    fn tables_have_a_cell_for_every_name() {
+        let rows = [row("none"), row("adaptive:4,64")];
+        let text = csv(&rows);
+        let lines: Vec<Vec<String>> = text.lines().map(cells).collect();
+        assert_eq!(lines.len(), 3);
+        assert!(lines.iter().all(|line| line.len() == 15), "{text}");
+        assert_eq!((lines[2][6].as_str(), lines[2][1].as_str()), ("adaptive:4,64", "spheres:10"));
+        let text = markdown(&rows);
+        assert!(
+            text.contains("| spheres:10 | 4x3 | 6 | adaptive:4,64 | 0.2500 | 1.50 |"),
+            "{text}"
+        );
+        let study = Study { rows: rows.to_vec(), portraits: Vec::new() };
+        let read: serde_json::Value =
+            serde_json::from_str(&json(&study, 2).expect("JSON")).expect("JSON");
+        assert_eq!(
+            (&read["rows"][1]["mode"], &read["threads"]),
+            (&"adaptive:4,64".into(), &2.into())
+        );
+    }
+}
