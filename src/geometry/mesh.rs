@@ -181,7 +181,10 @@ impl Mesh {
 
 /// Whether three finite points span an area at all, however small.
 pub fn has_area(corners: &[DVec3; 3]) -> bool {
-    doubled_area(corners) != DVec3::ZERO
+    // Nearly always the plain cross product is far above its rounding.
+    let (u, v) = (corners[1] - corners[0], corners[2] - corners[0]);
+    let (plain, sizes) = (u.cross(v).abs(), u.abs().max_element() * v.abs().max_element());
+    plain.max_element() > 1e-12 * sizes && sizes > 1e-250 || doubled_area(corners) != DVec3::ZERO
 }
 
 /// The cross product of two edges, scaled so that it is zero only if the corners lie on one line.

@@ -92,6 +92,11 @@ impl Triangulator {
             let forward = (q - p).perp_dot(r - p) >= 0.0;
             self.triangles.push(if forward { [a, b, c] } else { [a, c, b] });
         }
+        if self.triangles.is_empty() {
+            // An outline that crosses itself so that clipping finds no ear.
+            self.triangles.extend((1..self.flat.len() as u32 - 1).map(|k| [0, k, k + 1]));
+            return;
+        }
         self.put_back();
     }
 

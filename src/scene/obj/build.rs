@@ -35,6 +35,8 @@ pub(super) struct Builder<'a> {
     first: Vec<u32>,
     /// Whether a face becomes triangles.
     kept: Vec<bool>,
+    /// How many normals are the file's own.
+    given_normals: usize,
     degenerate: Tally,
     duplicate: Tally,
     /// Corners that were given twice in a row.
@@ -49,6 +51,7 @@ impl<'a> Builder<'a> {
             areas: Vec::with_capacity(obj.len()),
             first,
             kept: Vec::with_capacity(obj.len()),
+            given_normals: obj.normals.len(),
             degenerate: Tally::default(),
             duplicate: Tally::default(),
             repeated: Tally::default(),
@@ -146,7 +149,10 @@ impl<'a> Builder<'a> {
         }
         self.first = Vec::new();
         let has_colors = !self.obj.colors.is_empty();
-        let (corners, material_of, torn) = self.triangles(&materials);
+        let (corners, material_of, [torn, turned]) = self.triangles(&materials);
+        if corners.is_empty() {
+            return Err(ModelError::NoArea { path: self.path.to_owned() });
+        }
         if torn.count > 0 {
             let message = format!(
                 "filled {} only in part, as the outline crosses itself{}",
@@ -154,6 +160,14 @@ impl<'a> Builder<'a> {
                 first(torn)
             );
             warnings.push(self.warning(torn, message));
+        }
+        if turned.count > 0 {
+            let message = format!(
+                "turned {} over, whose normals point to the back{}",
+                faces(turned),
+                first(turned)
+            );
+            warnings.push(self.warning(turned, message));
         }
         let mesh = self.mesh(corners, has_colors)?;
         warnings.sort_by(|a, b| (&a.file, a.line).cmp(&(&b.file, b.line)));
@@ -230,15 +244,16 @@ impl<'a> Builder<'a> {
         (0..obj.len()).map(|face| self.kept[face] && obj.face(face).any(lacks)).collect()
     }
 
-    /// The triangles as places in the lists of corners, and their materials.
-    fn triangles(&self, materials: &Materials) -> (Vec<[u32; 3]>, Vec<u32>, Tally) {
+    /// The triangles as places in the lists of corners, and their materials; and the faces that are not wholly filled, and
+    /// those that were turned over.
+    fn triangles(&self, materials: &Materials) -> (Vec<[u32; 3]>, Vec<u32>, [Tally; 2]) {
         let obj = &self.obj;
         let mut triangulator = Triangulator::default();
         let (mut triangles, mut material_of) = (Vec::new(), Vec::new());
         let room = obj.corners.len().saturating_sub(2 * obj.len());
         triangles.reserve_exact(room);
         material_of.reserve_exact(room);
-        let mut torn = Tally::default();
+        let (mut torn, mut turned) = (Tally::default(), Tally::default());
         let mut points = Vec::new();
         for (k, section) in obj.sections.iter().enumerate() {
             let end = obj.sections.get(k + 1).map_or(obj.len(), |next| next.first_face as usize);
@@ -258,15 +273,33 @@ impl<'a> Builder<'a> {
                 if points.len() > 4 && is_torn(&points, cut, self.areas[face]) {
                     torn.add(obj.lines[face]);
                 }
+                let is_turned = self.is_turned(face);
+                if is_turned {
+                    turned.add(obj.lines[face]);
+                }
                 for triangle in cut {
                     if has_area(&triangle.map(|c| points[c as usize])) {
+                        let [a, b, c] = *triangle;
+                        let triangle = if is_turned { [a, c, b] } else { [a, b, c] };
                         triangles.push(triangle.map(|c| range.start as u32 + c));
                         material_of.push(material);
                     }
                 }
             }
         }
-        (triangles, material_of, torn)
+        (triangles, material_of, [torn, turned])
+    }
+
+    /// Whether the normals that the file gives to a face point to its back.
+    fn is_turned(&self, face: usize) -> bool {
+        let obj = &self.obj;
+        let range = obj.face(face);
+        let Some(normals) = obj.corner_normals.get(range) else {
+            return false;
+        };
+        let given =
+            normals.iter().filter_map(|n| obj.normals[..self.given_normals].get(*n as usize));
+        given.map(|n| n.as_dvec3()).sum::<DVec3>().dot(self.areas[face]) < 0.0
     }
 
     /// The mesh of triangles of corners: corners that agree in position, surface coordinates and normal become one vertex.

@@ -98,6 +98,15 @@ impl Library {
         library
     }
 
+    /// The materials in the text of one library, without pictures.
+    pub(super) fn parse(path: &str, text: &[u8]) -> Self {
+        let mut library = Self { is_named: true, ..Self::default() };
+        for material in mtl::parse(path, text, &mut library.warnings) {
+            library.materials.entry(material.name.clone()).or_insert((material, None));
+        }
+        library
+    }
+
     /// Reads the pictures, each file once, all at a time.
     fn take_in(&mut self, base: &Path, materials: Vec<(String, Mtl)>) {
         let mut names: Vec<&str> = Vec::new();

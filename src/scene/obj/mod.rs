@@ -66,6 +66,18 @@ pub fn inspect_model(path: &Path) -> Result<ModelReport, ModelError> {
     Ok(report)
 }
 
+/// The model in the bytes of an OBJ file, with the materials in those of its library; no other file is looked at.
+///
+/// # Errors
+/// Those of [`load_model`].
+pub fn parse_model(name: &str, obj: &[u8], mtl: &[u8]) -> Result<Model, ModelError> {
+    let not_read = |source| ModelError::Text { path: name.to_owned(), source };
+    let text = text::decode(obj).map_err(not_read)?;
+    let obj = parse::Obj::parse(name, &text)?;
+    let library = text::decode(mtl).map(|text| materials::Library::parse(name, &text));
+    build::Builder::new(name, obj, library.map_err(not_read)?)?.model()
+}
+
 /// The statements of a file; its materials and pictures are read meanwhile.
 fn read(path: &Path) -> Result<(parse::Obj, materials::Library), ModelError> {
     let shown = path.display().to_string();
@@ -81,14 +93,20 @@ fn read(path: &Path) -> Result<(parse::Obj, materials::Library), ModelError> {
 
 /// The `mtllib` statements of a text, found without reading the rest.
 fn libraries(text: &[u8]) -> Vec<(String, u32)> {
-    if memchr::memmem::find(text, b"mtllib").is_none() {
-        return Vec::new();
-    }
-    let (mut found, mut lines) = (Vec::new(), text::Lines::new(text));
-    while let Some((number, line)) = lines.next_line() {
-        let mut tokens = text::Tokens::new(line);
-        if line.contains(&b'm') && tokens.next_word() == Some(b"mtllib") {
-            found.push((text::name_of(tokens.rest_as_name()), number));
+    let (mut found, mut counted, mut line) = (Vec::new(), 0, 1_u32);
+    for at in memchr::memmem::find_iter(text, b"mtllib") {
+        let start = memchr::memrchr2(b'\n', b'\r', &text[..at]).map_or(0, |end| end + 1);
+        if !text[start..at].trim_ascii().is_empty() {
+            continue;
+        }
+        line = line.saturating_add(text::line_ends(&text[counted..start]));
+        counted = start;
+        let mut lines = text::Lines::new(&text[start..]);
+        if let Some((_, statement)) = lines.next_line() {
+            let mut tokens = text::Tokens::new(statement);
+            if tokens.next_word() == Some(b"mtllib") {
+                found.push((text::name_of(tokens.rest_as_name()), line));
+            }
         }
     }
     found

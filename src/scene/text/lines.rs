@@ -59,6 +59,13 @@ impl<'a> Lines<'a> {
     }
 }
 
+/// How many lines end in `text`.
+pub fn line_ends(text: &[u8]) -> u32 {
+    let feeds = memchr::memchr_iter(b'\n', text).count();
+    let returns = memchr::memchr_iter(b'\r', text).filter(|at| text.get(at + 1) != Some(&b'\n'));
+    u32::try_from(feeds + returns.count()).unwrap_or(u32::MAX)
+}
+
 /// Whether the line ends in a backslash that is no part of a comment.
 #[inline]
 fn goes_on(line: &[u8]) -> bool {

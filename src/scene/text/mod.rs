@@ -9,6 +9,6 @@ pub mod number;
 pub mod tokens;
 
 pub use decode::{TextError, decode, name_of, read_limited};
-pub use lines::Lines;
+pub use lines::{Lines, line_ends};
 pub use number::{float, integer};
 pub use tokens::Tokens;

@@ -1,0 +1,11 @@
+//! NFF, up to a scene that is ready to trace.
+
+#![no_main]
+
+use whitted::scene::{Scene, nff::parse_nff};
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| {
+    if let Ok(scene) = parse_nff("fuzz", data, None) {
+        let _ = Scene::assemble("fuzz", scene.parts);
+    }
+});
