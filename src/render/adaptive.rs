@@ -71,6 +71,7 @@ impl Adaptive {
                             suspect: look.suspect,
                             error: look.center_error(look.inner),
                             contrast: if look.suspect { look.contrast } else { 0.0 },
+                            busy: if look.suspect { look.busy } else { 0.0 },
                             ..Pixel::default()
                         };
                         (pixel, color)
@@ -249,7 +250,7 @@ impl Adaptive {
                 },
                 _ => continue,
             };
-            demand.add(pixel.error / rays, rays as u64);
+            demand.add(pixel.error / rays, rays.ceil() as u64);
         }
         demand
     }

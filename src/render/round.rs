@@ -46,6 +46,8 @@ pub(super) struct Pixel {
     pub(super) error: f32,
     /// The contrast to the neighbours, zero unless suspect.
     pub(super) contrast: f32,
+    /// How often things change around, from 0 to 1; zero unless suspect.
+    pub(super) busy: f32,
     pub(super) refined: Option<Box<Refined>>,
 }
 
@@ -129,7 +131,7 @@ impl Round<'_> {
                 continue;
             };
             let refined = Refined::new(center, &[a, b, c, d]);
-            pixel.error = refined.error(pixel.contrast);
+            pixel.error = refined.error(pixel.contrast, pixel.busy);
             pixel.stage = 1;
             pixel.refined = Some(Box::new(refined));
             changed[index] = true;
@@ -199,10 +201,11 @@ impl Round<'_> {
     fn advance<'s>(&self, pixel: &mut Pixel, answers: &mut impl Iterator<Item = &'s Sample>) {
         let points = self.next_points(pixel);
         if let (Some(points), Some(refined)) = (points, &mut pixel.refined) {
+            refined.begin(points);
             for sample in answers.take((points - refined.points()) as usize) {
                 refined.add(sample);
             }
-            pixel.error = refined.error(pixel.contrast);
+            pixel.error = refined.error(pixel.contrast, pixel.busy);
             pixel.stage += 1;
         }
     }

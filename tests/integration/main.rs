@@ -2,9 +2,12 @@
 
 #![allow(clippy::print_stdout, reason = "a test's table is read with --nocapture")]
 
+mod antialiasing;
 mod determinism;
 mod extremes;
 mod numerics;
 mod objects;
 mod references;
+#[cfg(feature = "cli")]
+mod study;
 mod support;
