@@ -21,6 +21,9 @@ const NOISE: f32 = 4.2;
 /// How far, in logarithms, the error goes from that of an even pattern to that of random samples in the busiest places.
 const BUSY: f32 = 0.6;
 
+/// The least of [`Look::busy`] for a pixel between two that differ from it.
+const BETWEEN: f32 = 0.75;
+
 /// A pixel's centre among its eight neighbours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
@@ -36,7 +39,8 @@ pub struct Look {
     pub curve: f32,
     /// Squared differences of opposite neighbours, horizontal and vertical.
     pub slope: f32,
-    /// How often the signature changes on the way round: 0 where one edge or none passes by, 1 where six or more do.
+    /// How often the signature changes on the way round: 0 where one edge or none passes by, 1 where six or more do. Where
+    /// neighbours at opposite sides both differ, which no single edge makes, it is at least 3/4.
     pub busy: f32,
 }
 
@@ -63,8 +67,12 @@ impl Look {
             |a: usize, b: usize| (levels[a] + levels[b] - 2.0 * center).length_squared() / 3.0;
         let changes = (0..8).filter(|&k| signatures[RING[k]] != signatures[RING[(k + 1) % 8]]);
         let changes = changes.count() as f32;
+        let between = [(0, 8), (1, 7), (2, 6), (3, 5)]
+            .iter()
+            .any(|&(a, b)| signatures[a] != signature && signatures[b] != signature);
+        let busy = ((changes - 2.0) / 4.0).clamp(0.0, 1.0);
         Self {
-            busy: ((changes - 2.0) / 4.0).clamp(0.0, 1.0),
+            busy: if between { busy.max(BETWEEN) } else { busy },
             suspect: signatures.iter().any(|s| *s != signature),
             inner: [1, 3, 5, 7].iter().all(|&place| signatures[place] == signature),
             edge,
