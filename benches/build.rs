@@ -2,7 +2,7 @@
 //!
 //! Besides the stress scenes, those on which a builder may take quadratic time: equal boxes, and boxes in a row.
 
-#[expect(dead_code, reason = "the rays of the other benchmark")]
+#[allow(dead_code, reason = "shared with the other benches")]
 mod stress;
 
 use std::hint::black_box;

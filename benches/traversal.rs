@@ -4,6 +4,7 @@
 //! that of an independent program (Embree) on the same geometry and rays. `WHITTED_BENCH_LARGE=1` adds a million
 //! spheres and a mesh of a million triangles.
 
+#[allow(dead_code, reason = "shared with the other benches")]
 mod stress;
 
 use std::{hint::black_box, ops::ControlFlow};

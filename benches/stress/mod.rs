@@ -173,3 +173,32 @@ pub(crate) fn random(bounds: &Bounds, count: usize) -> Vec<Ray> {
     };
     (0..count).map(|_| ray()).collect()
 }
+
+/// The mesh of an OBJ file's `v` and `f` lines, made to fit a box about (0, 0, −100) with a largest side of 40.
+pub(crate) fn mesh(text: &str) -> Geometry {
+    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
+    for line in text.lines() {
+        let mut words = line.split_whitespace();
+        match words.next() {
+            Some("v") => {
+                let x: Vec<f64> = words.map(|word| word.parse().expect("a coordinate")).collect();
+                vertices.push(DVec3::new(x[0], x[1], x[2]));
+            }
+            Some("f") => {
+                let index = |word: &str| word.split('/').next().expect("a corner").parse::<usize>();
+                let corners: Vec<usize> =
+                    words.map(|word| index(word).expect("an index") - 1).collect();
+                faces.extend(corners[1..].windows(2).map(|w| [corners[0], w[0], w[1]]));
+            }
+            _ => {}
+        }
+    }
+    let box_of = Bounds::of_points(vertices.iter().copied());
+    let fit =
+        |v: &DVec3| single((*v - box_of.center()) * (40.0 / box_of.size()) + DVec3::Z * -100.0);
+    let vertices: Vec<DVec3> = vertices.iter().map(fit).collect();
+    let triangle =
+        |face: &[usize; 3]| Triangle::try_new(face.map(|k| vertices[k])).ok().map(Shape::from);
+    let shapes = faces.iter().filter_map(triangle).collect();
+    Geometry { shapes, bounds: Bounds::of_points(vertices.iter().copied()) }
+}

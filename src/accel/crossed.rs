@@ -13,6 +13,19 @@ use super::{
 };
 use crate::geometry::{Crossing, Ray};
 
+/// What is told of crossings; a closure, or something that must be inlined.
+pub(super) trait Visit {
+    /// A crossing of a primitive; a break ends the search.
+    fn visit(&mut self, primitive: u32, crossing: Crossing) -> ControlFlow<()>;
+}
+
+impl<F: FnMut(u32, Crossing) -> ControlFlow<()>> Visit for F {
+    #[inline(always)]
+    fn visit(&mut self, primitive: u32, crossing: Crossing) -> ControlFlow<()> {
+        self(primitive, crossing)
+    }
+}
+
 /// The visit of all crossings, or the search for one with an opaque primitive.
 pub(super) struct Crossed<'a, B, V> {
     pub(super) accel: &'a Accel,
@@ -25,13 +38,17 @@ pub(super) struct Crossed<'a, B, V> {
 impl<B, V> Kernel for Crossed<'_, B, V>
 where
     B: Fn(u32) -> bool,
-    V: FnMut(u32, Crossing) -> ControlFlow<()>,
+    V: Visit,
 {
     type Output = bool;
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> bool {
         let Self { accel, ray, end, opaque, visit } = self;
+        #[cfg(feature = "leaf-study")]
+        if super::study::is_naive() {
+            return super::study::is_blocked(simd, accel, ray, end, opaque, visit);
+        }
         let mut test = Test { accel, ray, end, opaque, visit };
         for place in accel.outside() {
             if test.test(simd, place) {
@@ -42,7 +59,7 @@ where
         match tree.frame.enter(ray) {
             Entry::Miss => false,
             Entry::Ray(tree_ray) => {
-                let leaf_ray = LeafRay::new(simd, &tree_ray, end);
+                let leaf_ray = LeafRay::new(&tree_ray, end);
                 let (limit, left) = (tree_ray.end_above(end), accel.place_left(ray));
                 let mut search = Search { test, tree, leaf_ray, left, limit, stopped: false };
                 walk::<S, false>(simd, &tree.nodes, tree.root, &tree_ray, &mut search);
@@ -62,23 +79,25 @@ where
 }
 
 /// The test of one primitive in double precision.
-struct Test<'a, B, V> {
-    accel: &'a Accel,
-    ray: &'a Ray,
-    end: f64,
-    opaque: B,
-    visit: V,
+pub(super) struct Test<'a, B, V> {
+    pub(super) accel: &'a Accel,
+    pub(super) ray: &'a Ray,
+    pub(super) end: f64,
+    pub(super) opaque: B,
+    pub(super) visit: V,
 }
 
 impl<B, V> Test<'_, B, V>
 where
     B: Fn(u32) -> bool,
-    V: FnMut(u32, Crossing) -> ControlFlow<()>,
+    V: Visit,
 {
     /// Whether the primitive in `place` stops the ray.
     #[inline(always)]
-    fn test<S: Simd>(&mut self, simd: S, place: usize) -> bool {
+    pub(super) fn test<S: Simd>(&mut self, simd: S, place: usize) -> bool {
         let number = self.accel.numbers[place];
+        #[cfg(feature = "leaf-study")]
+        super::study::count_test(&self.accel.shapes[place]);
         let [first, second] = simd.crossings(&self.accel.shapes[place], self.ray, number);
         self.crosses(number, first) || self.crosses(number, second)
     }
@@ -87,27 +106,27 @@ where
     fn crosses(&mut self, number: u32, crossing: Crossing) -> bool {
         crossing.t > 0.0
             && crossing.t < self.end
-            && ((self.opaque)(number) || (self.visit)(number, crossing).is_break())
+            && ((self.opaque)(number) || self.visit.visit(number, crossing).is_break())
     }
 }
 
-struct Search<'a, S: Simd, B, V> {
-    test: Test<'a, B, V>,
-    tree: &'a Tree,
-    leaf_ray: LeafRay<S>,
-    left: u32,
-    limit: f32,
-    stopped: bool,
+pub(super) struct Search<'a, B, V> {
+    pub(super) test: Test<'a, B, V>,
+    pub(super) tree: &'a Tree,
+    pub(super) leaf_ray: LeafRay,
+    pub(super) left: u32,
+    pub(super) limit: f32,
+    pub(super) stopped: bool,
 }
 
-impl<S: Simd, B, V> Search<'_, S, B, V>
+impl<B, V> Search<'_, B, V>
 where
     B: Fn(u32) -> bool,
-    V: FnMut(u32, Crossing) -> ControlFlow<()>,
+    V: Visit,
 {
     /// Whether one of a leaf's candidates stops the ray: a certain hit of an opaque one does without further ado.
     #[inline(always)]
-    fn take(&mut self, simd: S, first: u32, candidates: &Candidates) -> bool {
+    fn take<S: Simd>(&mut self, simd: S, first: u32, candidates: &Candidates) -> bool {
         let Candidates { mut maybe, certain, .. } = *candidates;
         while maybe != 0 {
             let lane = maybe.trailing_zeros() & 7;
@@ -124,10 +143,10 @@ where
     }
 }
 
-impl<S: Simd, B, V> Visitor<S> for Search<'_, S, B, V>
+impl<S: Simd, B, V> Visitor<S> for Search<'_, B, V>
 where
     B: Fn(u32) -> bool,
-    V: FnMut(u32, Crossing) -> ControlFlow<()>,
+    V: Visit,
 {
     #[inline(always)]
     fn limit(&self) -> f32 {
@@ -136,6 +155,8 @@ where
 
     #[inline(always)]
     fn leaf(&mut self, simd: S, leaf: Content) -> bool {
+        #[cfg(feature = "leaf-study")]
+        super::study::count_leaf(leaf);
         self.stopped = match leaf {
             Content::Spheres(k) => {
                 let block = &self.tree.spheres[k];

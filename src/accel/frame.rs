@@ -44,7 +44,7 @@ pub(super) struct TreeRay {
     /// Lengths of the direction here for each length of the direction in the world; a power of two.
     pub(super) rate: f64,
     /// The parameter (here) at which it arrives.
-    arrival: f64,
+    pub(super) arrival: f64,
     slack: f64,
 }
 
@@ -89,6 +89,11 @@ impl Frame {
     /// A point in this frame.
     pub(super) fn point(&self, p: DVec3) -> DVec3 {
         (p - self.center) * self.scale
+    }
+
+    /// A vector in this frame.
+    pub(super) fn vector(&self, v: DVec3) -> DVec3 {
+        v * self.scale
     }
 
     /// By how much the boxes are enlarged.

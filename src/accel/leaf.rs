@@ -30,40 +30,46 @@ impl Candidates {
 }
 
 /// A ray made ready for the tests of leaves.
-#[derive(Clone, Copy)]
-pub(super) struct LeafRay<S: Simd> {
-    origin: [S::F; 3],
-    dir: [S::F; 3],
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LeafRay {
+    pub(super) origin: [f32; 3],
+    pub(super) dir: [f32; 3],
     /// One over the squared length of the direction.
-    inverse: S::F,
+    pub(super) inverse: f32,
     /// The length of the direction.
     length: f32,
     /// The end of the ray, rounded down.
     end: f32,
 }
 
-impl<S: Simd> LeafRay<S> {
+impl LeafRay {
     #[inline(always)]
-    pub(super) fn new(simd: S, ray: &TreeRay, end: f64) -> Self {
-        let ([ox, oy, oz], [dx, dy, dz]) = (ray.origin, ray.dir);
-        let square = dx * dx + (dy * dy + dz * dz);
+    pub(super) fn new(ray: &TreeRay, end: f64) -> Self {
+        let [x, y, z] = ray.dir;
+        let square = x * x + (y * y + z * z);
         Self {
-            origin: [simd.splat(ox), simd.splat(oy), simd.splat(oz)],
-            dir: [simd.splat(dx), simd.splat(dy), simd.splat(dz)],
-            inverse: simd.splat(1.0 / square),
+            origin: ray.origin,
+            dir: ray.dir,
+            inverse: 1.0 / square,
             length: square.sqrt(),
             end: ray.end_below(end),
         }
     }
 }
 
+/// The same vector in all lanes.
 #[inline(always)]
-fn dot<S: Simd>(simd: S, a: [S::F; 3], b: [S::F; 3]) -> S::F {
+pub(super) fn splat<S: Simd>(simd: S, v: [f32; 3]) -> [S::F; 3] {
+    [simd.splat(v[0]), simd.splat(v[1]), simd.splat(v[2])]
+}
+
+#[inline(always)]
+pub(super) fn dot<S: Simd>(simd: S, a: [S::F; 3], b: [S::F; 3]) -> S::F {
     simd.mul_add(a[0], b[0], simd.mul_add(a[1], b[1], simd.mul(a[2], b[2])))
 }
 
 #[inline(always)]
-fn cross<S: Simd>(simd: S, a: [S::F; 3], b: [S::F; 3]) -> [S::F; 3] {
+pub(super) fn cross<S: Simd>(simd: S, a: [S::F; 3], b: [S::F; 3]) -> [S::F; 3] {
     [
         simd.mul_sub(a[1], b[2], simd.mul(a[2], b[1])),
         simd.mul_sub(a[2], b[0], simd.mul(a[0], b[2])),
@@ -72,12 +78,12 @@ fn cross<S: Simd>(simd: S, a: [S::F; 3], b: [S::F; 3]) -> [S::F; 3] {
 }
 
 #[inline(always)]
-fn sub<S: Simd>(simd: S, a: [S::F; 3], b: [S::F; 3]) -> [S::F; 3] {
+pub(super) fn sub<S: Simd>(simd: S, a: [S::F; 3], b: [S::F; 3]) -> [S::F; 3] {
     [simd.sub(a[0], b[0]), simd.sub(a[1], b[1]), simd.sub(a[2], b[2])]
 }
 
 #[inline(always)]
-fn load<S: Simd>(simd: S, v: &[[f32; 8]; 3]) -> [S::F; 3] {
+pub(super) fn load<S: Simd>(simd: S, v: &[[f32; 8]; 3]) -> [S::F; 3] {
     [simd.load(&v[0]), simd.load(&v[1]), simd.load(&v[2])]
 }
 
@@ -85,9 +91,9 @@ fn load<S: Simd>(simd: S, v: &[[f32; 8]; 3]) -> [S::F; 3] {
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Spheres {
-    center: [[f32; 8]; 3],
+    pub(super) center: [[f32; 8]; 3],
     /// The square of a radius that is certainly too large; negative for a sphere that is not there.
-    outer: [f32; 8],
+    pub(super) outer: [f32; 8],
     /// The square of a radius that is certainly too small; negative if there is none.
     inner: [f32; 8],
     /// The place of the first, and how many there are.
@@ -119,25 +125,26 @@ impl Spheres {
     /// With c the centre seen from the origin and b = c·d/d·d, the ray passes the centre at b at the distance of
     /// q = c − b d, and is inside the sphere for √((r² − q·q)/d·d) to either side.
     #[inline(always)]
-    pub(super) fn sort_out<S: Simd>(&self, simd: S, ray: &LeafRay<S>, limit: f32) -> Candidates {
-        let c = sub(simd, load(simd, &self.center), ray.origin);
-        let b = simd.mul(dot(simd, c, ray.dir), ray.inverse);
+    pub(super) fn sort_out<S: Simd>(&self, simd: S, ray: &LeafRay, limit: f32) -> Candidates {
+        let (dir, inverse) = (splat(simd, ray.dir), simd.splat(ray.inverse));
+        let c = sub(simd, load(simd, &self.center), splat(simd, ray.origin));
+        let b = simd.mul(dot(simd, c, dir), inverse);
         let q = [
-            simd.neg_mul_add(b, ray.dir[0], c[0]),
-            simd.neg_mul_add(b, ray.dir[1], c[1]),
-            simd.neg_mul_add(b, ray.dir[2], c[2]),
+            simd.neg_mul_add(b, dir[0], c[0]),
+            simd.neg_mul_add(b, dir[1], c[1]),
+            simd.neg_mul_add(b, dir[2], c[2]),
         ];
         let offset = dot(simd, q, q);
         // The root of a negative number is NaN; `min` and `max` hand on a NaN in their second place, which is a miss.
         let gap = simd.sub(simd.load(&self.outer), offset);
-        let half = simd.sqrt(simd.mul(gap, ray.inverse));
+        let half = simd.sqrt(simd.mul(gap, inverse));
         let (enter, leave) = (simd.sub(b, half), simd.add(b, half));
         let maybe = simd.le(simd.max(simd.splat(0.0), enter), simd.min(simd.splat(limit), leave));
         if maybe == 0 {
             return Candidates::NONE;
         }
         let gap = simd.sub(simd.load(&self.inner), offset);
-        let late = simd.sub(b, simd.sqrt(simd.mul(gap, ray.inverse)));
+        let late = simd.sub(b, simd.sqrt(simd.mul(gap, inverse)));
         let ahead = simd.le(simd.splat(f32::MIN_POSITIVE), enter);
         let certain = maybe & ahead & simd.le(late, simd.splat(ray.end));
         Candidates { maybe, certain, from: simd.store(enter), to: simd.store(late) }
@@ -148,9 +155,9 @@ impl Spheres {
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Triangles {
-    corner: [[f32; 8]; 3],
-    edge1: [[f32; 8]; 3],
-    edge2: [[f32; 8]; 3],
+    pub(super) corner: [[f32; 8]; 3],
+    pub(super) edge1: [[f32; 8]; 3],
+    pub(super) edge2: [[f32; 8]; 3],
     /// The longest edge of all.
     size: f32,
     /// What the errors below are multiplied by where the pad is larger than usual.
@@ -191,13 +198,14 @@ impl Triangles {
     /// Source: Möller & Trumbore, "Fast, minimum storage ray/triangle intersection", *Journal of Graphics Tools* 2(1),
     /// 1997.
     #[inline(always)]
-    pub(super) fn sort_out<S: Simd>(&self, simd: S, ray: &LeafRay<S>, limit: f32) -> Candidates {
+    pub(super) fn sort_out<S: Simd>(&self, simd: S, ray: &LeafRay, limit: f32) -> Candidates {
         const U: f32 = f32::EPSILON / 2.0;
         let (edge1, edge2) = (load(simd, &self.edge1), load(simd, &self.edge2));
-        let c = sub(simd, load(simd, &self.corner), ray.origin);
+        let dir = splat(simd, ray.dir);
+        let c = sub(simd, load(simd, &self.corner), splat(simd, ray.origin));
         let n = cross(simd, edge1, edge2);
-        let r = cross(simd, c, ray.dir);
-        let signed = dot(simd, n, ray.dir);
+        let r = cross(simd, c, dir);
+        let signed = dot(simd, n, dir);
         let v = simd.toggle_sign(dot(simd, edge2, r), signed);
         let minus_w = simd.toggle_sign(dot(simd, edge1, r), signed);
         let scaled_t = simd.toggle_sign(dot(simd, n, c), signed);

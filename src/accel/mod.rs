@@ -4,6 +4,7 @@
 //! hit is decided by the shapes themselves in double precision, so that every answer is, to the bit, the one of
 //! [`brute`], whatever the machine's instructions.
 
+mod beam;
 pub mod brute;
 mod build;
 mod collapse;
@@ -12,10 +13,13 @@ mod extreme;
 mod frame;
 mod leaf;
 mod node;
+mod packet;
 mod query;
 mod simd;
 #[cfg(target_arch = "x86_64")]
 mod simd_x86;
+#[cfg(feature = "leaf-study")]
+pub mod study;
 #[cfg(test)]
 mod tests;
 mod tree;
@@ -28,6 +32,7 @@ use glam::DVec3;
 use crate::geometry::{Bounds, Crossing, Hit, Ray, Shape};
 use build::Division;
 use crossed::Crossed;
+use packet::{BlockedPacket, NearestPacket};
 use query::Nearest;
 pub use simd::Isa;
 use simd::{Kernel, Simd, dispatch};
@@ -64,6 +69,9 @@ pub struct Accel {
     inside: usize,
     bounds: Bounds,
     isa: Isa,
+    /// The shapes as the textbook has them, in their places.
+    #[cfg(feature = "leaf-study")]
+    naive: Vec<study::NaiveShape>,
 }
 
 impl Accel {
@@ -88,7 +96,17 @@ impl Accel {
         }
         let shapes = in_order(shapes, &numbers);
         let isa = if isa.is_available() { isa } else { Isa::Portable };
-        Self { tree, shapes, numbers, places, inside, bounds, isa }
+        Self {
+            tree,
+            #[cfg(feature = "leaf-study")]
+            naive: shapes.iter().map(study::NaiveShape::new).collect(),
+            shapes,
+            numbers,
+            places,
+            inside,
+            bounds,
+            isa,
+        }
     }
 
     /// The number of primitives.
@@ -141,21 +159,40 @@ impl Accel {
 
     /// The nearest hits of up to 64 rays of one origin, as [`Accel::nearest`] without an end finds them.
     pub fn nearest_packet(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
-        for (ray, hit) in rays.iter().zip(hits) {
-            *hit = self.nearest(ray, f64::INFINITY);
+        for (rays, hits) in rays.chunks(packet::RAYS).zip(hits.chunks_mut(packet::RAYS)) {
+            if !dispatch(self.isa, NearestPacket { accel: self, rays, hits }) {
+                for (ray, hit) in rays.iter().zip(hits) {
+                    *hit = self.nearest(ray, f64::INFINITY);
+                }
+            }
         }
     }
 
-    /// Calls `visit(index, primitive, crossing)` for every crossing of each of up to 64 rays before its end at `t = 1`, which is
-    /// `target` for all of them, in no order; a ray whose visit breaks is done.
-    pub fn any_crossing_packet(
+    /// As [`Accel::is_blocked`] for up to 64 rays that all end at `t = 1` in `target`; `blocked` gets the answers, and
+    /// `visit(index, primitive, crossing)` is told the ray too.
+    pub fn is_blocked_packet(
         &self,
         rays: &[Ray],
-        _target: DVec3,
+        target: DVec3,
+        opaque: impl Fn(u32) -> bool,
         mut visit: impl FnMut(u32, u32, Crossing) -> ControlFlow<()>,
+        blocked: &mut [bool],
     ) {
-        for (ray, index) in rays.iter().zip(0..) {
-            self.any_crossing(ray, 1.0, |primitive, crossing| visit(index, primitive, crossing));
+        let packet = BlockedPacket {
+            accel: self,
+            rays,
+            target,
+            opaque: &opaque,
+            visit: &mut visit,
+            blocked,
+        };
+        if dispatch(self.isa, packet) {
+            return;
+        }
+        for ((ray, blocked), index) in rays.iter().zip(blocked).zip(0..) {
+            *blocked = self.is_blocked(ray, 1.0, &opaque, |primitive, crossing| {
+                visit(index, primitive, crossing)
+            });
         }
     }
 

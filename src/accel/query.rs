@@ -41,6 +41,8 @@ impl Best {
     #[inline(always)]
     pub(super) fn test<S: Simd>(&mut self, simd: S, accel: &Accel, ray: &Ray, place: usize) {
         let number = accel.numbers[place];
+        #[cfg(feature = "leaf-study")]
+        super::study::count_test(&accel.shapes[place]);
         let [first, second] = simd.crossings(&accel.shapes[place], ray, number);
         self.offer(first, number);
         self.offer(second, number);
@@ -66,6 +68,10 @@ impl Kernel for Nearest<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Option<Hit> {
         let Self { accel, ray, end } = self;
+        #[cfg(feature = "leaf-study")]
+        if super::study::is_naive() {
+            return super::study::nearest(simd, accel, ray, end);
+        }
         let mut best = Best::before(end);
         for place in accel.outside() {
             best.test(simd, accel, ray, place);
@@ -74,7 +80,7 @@ impl Kernel for Nearest<'_> {
             match tree.frame.enter(ray) {
                 Entry::Miss => {}
                 Entry::Ray(tree_ray) => {
-                    let mut search = Search::new(simd, accel, tree, ray, tree_ray, best);
+                    let mut search = Search::new(accel, tree, ray, tree_ray, best);
                     walk::<S, true>(simd, &tree.nodes, tree.root, &tree_ray, &mut search);
                     best = search.finish(simd);
                 }
@@ -103,31 +109,31 @@ impl Pending {
     const NONE: Self = Self { place: u32::MAX, from: f32::INFINITY };
 }
 
-struct Search<'a, S: Simd> {
+#[derive(Clone, Copy)]
+pub(super) struct Search<'a> {
     accel: &'a Accel,
     tree: &'a Tree,
     ray: &'a Ray,
     tree_ray: TreeRay,
-    leaf_ray: LeafRay<S>,
+    leaf_ray: LeafRay,
     /// The place of the primitive that the ray leaves, whose own test alone knows what that means.
     left: u32,
     /// No hit beyond this parameter, in the tree's frame, can be the nearest.
-    limit: f32,
+    pub(super) limit: f32,
     best: Best,
     pending: Pending,
 }
 
-impl<'a, S: Simd> Search<'a, S> {
+impl<'a> Search<'a> {
     #[inline(always)]
-    fn new(
-        simd: S,
+    pub(super) fn new(
         accel: &'a Accel,
         tree: &'a Tree,
         ray: &'a Ray,
         tree_ray: TreeRay,
         best: Best,
     ) -> Self {
-        let leaf_ray = LeafRay::new(simd, &tree_ray, best.t);
+        let leaf_ray = LeafRay::new(&tree_ray, best.t);
         let limit = tree_ray.end_above(best.t);
         let left = accel.place_left(ray);
         let pending = Pending::NONE;
@@ -136,7 +142,7 @@ impl<'a, S: Simd> Search<'a, S> {
 
     /// Decides the primitive in `place`.
     #[inline(always)]
-    fn test(&mut self, simd: S, place: u32) {
+    fn test<S: Simd>(&mut self, simd: S, place: u32) {
         self.best.test(simd, self.accel, self.ray, place as usize);
         self.limit = self.limit.min(self.tree_ray.end_above(self.best.t));
     }
@@ -145,7 +151,7 @@ impl<'a, S: Simd> Search<'a, S> {
     ///
     /// A pending hit loses to one that ends before it starts; where intervals overlap, both are decided.
     #[inline(always)]
-    fn take(&mut self, simd: S, first: u32, candidates: &Candidates) {
+    fn take<S: Simd>(&mut self, simd: S, first: u32, candidates: &Candidates) {
         let Candidates { mut maybe, certain, from, to } = *candidates;
         while maybe != 0 {
             let lane = maybe.trailing_zeros() & 7;
@@ -168,7 +174,7 @@ impl<'a, S: Simd> Search<'a, S> {
     }
 
     #[inline(always)]
-    fn finish(mut self, simd: S) -> Best {
+    pub(super) fn finish<S: Simd>(mut self, simd: S) -> Best {
         if self.pending.place != u32::MAX && self.pending.from <= self.limit {
             self.test(simd, self.pending.place);
         }
@@ -176,7 +182,7 @@ impl<'a, S: Simd> Search<'a, S> {
     }
 }
 
-impl<S: Simd> Visitor<S> for Search<'_, S> {
+impl<S: Simd> Visitor<S> for Search<'_> {
     #[inline(always)]
     fn limit(&self) -> f32 {
         self.limit
@@ -184,6 +190,8 @@ impl<S: Simd> Visitor<S> for Search<'_, S> {
 
     #[inline(always)]
     fn leaf(&mut self, simd: S, leaf: Content) -> bool {
+        #[cfg(feature = "leaf-study")]
+        super::study::count_leaf(leaf);
         match leaf {
             Content::Spheres(k) => {
                 let block = &self.tree.spheres[k];

@@ -85,6 +85,16 @@ impl Cone {
         [self.base, self.apex]
     }
 
+    /// The radius of the base.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Whether it is closed.
+    pub fn ends(&self) -> Ends {
+        self.ends
+    }
+
     pub(crate) fn bounds(&self) -> Bounds {
         let reach = disc_reach(self.frame.axis()) * self.radius;
         Bounds::of_points([self.base - reach, self.base + reach, self.apex])

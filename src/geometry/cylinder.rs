@@ -53,6 +53,16 @@ impl Cylinder {
         [self.base, self.top]
     }
 
+    /// The radius.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Whether it is closed.
+    pub fn ends(&self) -> Ends {
+        self.ends
+    }
+
     pub(crate) fn bounds(&self) -> Bounds {
         let reach = disc_reach(self.frame.axis()) * self.radius;
         Bounds::of_points([

@@ -11,6 +11,8 @@ mod shadow;
 mod signature;
 mod sum;
 
+use glam::DVec3;
+
 use crate::{
     accel::Work,
     color::Rgb,
@@ -40,10 +42,9 @@ pub struct Sample {
     pub rays: u32,
 }
 
-/// A ray yet to be traced.
+/// What a ray on the work list is for.
 #[derive(Clone, Copy, Debug)]
 struct Task {
-    ray: Ray,
     /// What its answer counts in the sample.
     weight: Rgb,
     /// Camera rays have level 1.
@@ -56,7 +57,8 @@ struct Task {
 /// A hit that shows its own colour, while the lights are added.
 #[derive(Clone, Copy, Debug)]
 struct Lit<'a> {
-    task: Task,
+    /// Its ray's place in the batch.
+    ray: usize,
     hit: Hit,
     surface: Surface,
     material: &'a Material,
@@ -83,10 +85,12 @@ pub struct Tracer<'a> {
     depth: u32,
     counts: RayCounts,
     shadows: Shadows<'a>,
-    // Scratch that is kept from batch to batch.
-    tasks: Vec<Task>,
-    batch: Vec<Task>,
+    /// The work list: rays, and what each is for.
     rays: Vec<Ray>,
+    tasks: Vec<Task>,
+    // Scratch that is kept from batch to batch: the rays taken from the list, and what becomes of them.
+    batch_rays: Vec<Ray>,
+    batch: Vec<Task>,
     hits: Vec<Option<Hit>>,
     lit: Vec<Lit<'a>>,
     gathered: Vec<Gathered>,
@@ -100,9 +104,10 @@ impl<'a> Tracer<'a> {
             depth,
             counts: RayCounts::default(),
             shadows: Shadows::new(scene),
-            tasks: Vec::new(),
-            batch: Vec::new(),
             rays: Vec::new(),
+            tasks: Vec::new(),
+            batch_rays: Vec::new(),
+            batch: Vec::new(),
             hits: Vec::new(),
             lit: Vec::new(),
             gathered: Vec::new(),
@@ -120,14 +125,9 @@ impl<'a> Tracer<'a> {
         self.gathered.resize(rays.len(), Gathered::default());
         if self.depth > 0 {
             self.counts.camera += rays.len() as u64;
-            let camera = |(ray, sample): (&Ray, u32)| Task {
-                ray: *ray,
-                weight: Rgb::ONE,
-                level: 1,
-                sample,
-                path: Path::START,
-            };
-            self.tasks.extend(rays.iter().zip(0..).map(camera));
+            self.rays.extend(rays);
+            let camera = |sample| Task { weight: Rgb::ONE, level: 1, sample, path: Path::START };
+            self.tasks.extend((0..rays.len() as u32).map(camera));
         }
         while self.take_batch() {
             self.scene.accel().run(Batch(self));
@@ -140,40 +140,36 @@ impl<'a> Tracer<'a> {
 
     /// Takes up to [`BATCH`] rays of one level from the end of the list; returns whether there were any.
     fn take_batch(&mut self) -> bool {
-        self.batch.clear();
         let Some(last) = self.tasks.last() else { return false };
-        let level = last.level;
-        while self.batch.len() < BATCH {
-            match self.tasks.pop_if(|task| task.level == level) {
-                Some(task) => self.batch.push(task),
-                None => break,
-            }
-        }
+        let of_level =
+            self.tasks.iter().rev().take(BATCH).take_while(|task| task.level == last.level);
+        let start = self.tasks.len() - of_level.count();
+        self.batch.clear();
+        self.batch.extend(self.tasks.drain(start..));
+        self.batch_rays.clear();
+        self.batch_rays.extend(self.rays.drain(start..));
         true
     }
 
     #[inline(always)]
     fn trace_batch(&mut self) {
-        self.rays.clear();
-        self.rays.extend(self.batch.iter().map(|task| task.ray));
         self.hits.clear();
-        self.hits.resize(self.rays.len(), None);
+        self.hits.resize(self.batch.len(), None);
         let is_camera = self.batch[0].level == 1;
         if is_camera {
-            self.scene.accel().nearest_packet(&self.rays, &mut self.hits);
+            self.scene.accel().nearest_packet(&self.batch_rays, &mut self.hits);
         } else {
-            for (ray, hit) in self.rays.iter().zip(&mut self.hits) {
+            for (ray, hit) in self.batch_rays.iter().zip(&mut self.hits) {
                 *hit = self.scene.accel().nearest(ray, f64::INFINITY);
             }
         }
         for k in 0..self.batch.len() {
-            let task = self.batch[k];
-            match self.hits[k] {
-                Some(hit) => {
-                    self.counts.camera_hit += u64::from(is_camera);
-                    self.meet(&task, &hit);
-                }
-                None => self.gather(&task, self.scene.background(), task.path.background()),
+            if let Some(hit) = self.hits[k] {
+                self.counts.camera_hit += u64::from(is_camera);
+                self.meet(k, &hit);
+            } else {
+                let signature = self.batch[k].path.background();
+                self.gather(k, self.scene.background(), signature);
             }
         }
         let scene = self.scene;
@@ -184,37 +180,44 @@ impl<'a> Tracer<'a> {
     }
 
     #[inline(always)]
-    fn gather(&mut self, task: &Task, light: Rgb, signature: u32) {
+    fn gather(&mut self, ray: usize, light: Rgb, signature: u32) {
+        let task = &self.batch[ray];
         let gathered = &mut self.gathered[task.sample as usize];
         gathered.rays += 1;
         gathered.color.add(task.weight * light);
         gathered.signature = gathered.signature.wrapping_add(signature);
     }
 
-    /// Puts what comes to a hit by reflection and transmission on the list, and the hit itself among those to be lit.
+    /// Puts what comes to the hit of ray `index` by reflection and transmission on the list, and the hit itself among those
+    /// to be lit.
     #[inline(always)]
-    fn meet(&mut self, task: &Task, hit: &Hit) {
+    fn meet(&mut self, index: usize, hit: &Hit) {
         let scene = self.scene;
-        let surface = scene.surface(&task.ray, hit);
+        let (task, ray) = (self.batch[index], &self.batch_rays[index]);
+        let (surface, dir) = (scene.surface(ray, hit), ray.dir);
         let material = scene.material(hit.primitive);
-        let inside = !(surface.normal.dot(task.ray.dir) < 0.0);
+        let inside = !(surface.normal.dot(dir) < 0.0);
         let path = task.path.hit(hit, inside);
-        if material.is_transmissive() {
-            self.transmit(task, hit, &surface, material, inside);
-            if inside {
-                // From within, a body only transmits.
-                return self.gather(task, Rgb::ZERO, path.signature());
+        if task.level < self.depth {
+            if material.reflection > 0.0 && !(inside && material.is_transmissive()) {
+                self.counts.reflected += 1;
+                let ray = surface.leave(hit, reflect(dir, surface.normal), inside);
+                self.push(ray, &task, Rgb::splat(material.reflection), Branch::Reflected);
+            }
+            if material.is_transmissive()
+                && let Some(onward) = self.transmitted(dir, surface.normal, material.ior, inside)
+            {
+                let ray = surface.leave(hit, onward, !inside);
+                self.push(ray, &task, material.transmission, Branch::Transmitted);
             }
         }
-        if material.reflection > 0.0 && task.level < self.depth {
-            let dir = reflect(task.ray.dir, surface.normal);
-            self.counts.reflected += 1;
-            let weight = Rgb::splat(material.reflection);
-            self.push(surface.leave(hit, dir, inside), task, weight, Branch::Reflected);
+        if inside && material.is_transmissive() {
+            // From within, a body only transmits.
+            return self.gather(index, Rgb::ZERO, path.signature());
         }
         let (diffuse, specular) = (Rgb::splat(material.ambient), Rgb::ZERO);
         self.lit.push(Lit {
-            task: *task,
+            ray: index,
             hit: *hit,
             surface,
             material,
@@ -225,47 +228,26 @@ impl<'a> Tracer<'a> {
         });
     }
 
+    /// The direction in which a ray goes on behind a surface, and counts it; `None` if it is totally reflected, which
+    /// transmits nothing.
     #[inline(always)]
-    fn transmit(
-        &mut self,
-        task: &Task,
-        hit: &Hit,
-        surface: &Surface,
-        material: &Material,
-        inside: bool,
-    ) {
-        if task.level >= self.depth {
-            return;
+    fn transmitted(&mut self, dir: DVec3, normal: DVec3, ior: f64, inside: bool) -> Option<DVec3> {
+        if ior == 1.0 {
+            self.counts.transmitted += 1;
+            return Some(dir);
         }
-        let dir = task.ray.dir;
-        let (count, onward) = if material.ior == 1.0 {
-            (&mut self.counts.transmitted, dir)
-        } else {
-            let (normal, from, to) = if inside {
-                (-surface.normal, material.ior, 1.0)
-            } else {
-                (surface.normal, 1.0, material.ior)
-            };
-            match refract(dir, normal, from, to) {
-                Some(refracted) => (&mut self.counts.refracted, refracted),
-                None => return, // total reflection transmits nothing
-            }
-        };
-        *count += 1;
-        self.push(
-            surface.leave(hit, onward, !inside),
-            task,
-            material.transmission,
-            Branch::Transmitted,
-        );
+        let (normal, from, to) = if inside { (-normal, ior, 1.0) } else { (normal, 1.0, ior) };
+        let refracted = refract(dir, normal, from, to)?;
+        self.counts.refracted += 1;
+        Some(refracted)
     }
 
+    #[inline(always)]
     fn push(&mut self, ray: Ray, parent: &Task, weight: Rgb, branch: Branch) {
-        let (weight, level) = (parent.weight * weight, parent.level + 1);
+        self.rays.push(ray);
         self.tasks.push(Task {
-            ray,
-            weight,
-            level,
+            weight: parent.weight * weight,
+            level: parent.level + 1,
             sample: parent.sample,
             path: parent.path.branch(branch),
         });
@@ -276,15 +258,14 @@ impl<'a> Tracer<'a> {
     fn add_light(&mut self, light: &Light) {
         self.shadows.clear();
         for (lit, index) in self.lit.iter().zip(0..) {
-            let normal = lit.normal();
-            let mut ray =
-                lit.surface.leave(&lit.hit, light.position - lit.surface.point, lit.inside);
-            let to_light = ray.dir.normalize();
-            let cosine = normal.dot(to_light);
+            let away = light.position - lit.surface.point;
+            let to_light = away.normalize();
+            let cosine = lit.normal().dot(to_light);
             if cosine > 0.0 {
+                let mut ray = lit.surface.leave(&lit.hit, away, lit.inside);
                 ray.dir = light.position - ray.origin; // so that the light is at t = 1
                 self.shadows.push(index, ray, to_light, cosine);
-                self.gathered[lit.task.sample as usize].rays += 1;
+                self.gathered[self.batch[lit.ray].sample as usize].rays += 1;
             }
         }
         self.counts.shadow += self.shadows.len() as u64;
@@ -298,7 +279,7 @@ impl<'a> Tracer<'a> {
             lit.diffuse += arriving * (lit.material.diffuse * shadow.cosine as f32);
             if lit.material.specular > 0.0 {
                 // The mirror direction, d − 2 (d·n) n, against the direction of the light.
-                let dir = lit.task.ray.dir;
+                let dir = self.batch_rays[lit.ray].dir;
                 let highlight =
                     dir.dot(shadow.to_light) - 2.0 * dir.dot(lit.normal()) * shadow.cosine;
                 if highlight > 0.0 {
@@ -321,7 +302,7 @@ impl<'a> Tracer<'a> {
                 light += lit.diffuse * color * material.opacity;
                 path = path.cell(cell);
             }
-            self.gather(&lit.task, light, path.signature());
+            self.gather(lit.ray, light, path.signature());
         }
     }
 }
@@ -338,7 +319,7 @@ impl Work for Batch<'_, '_> {
 
 impl Lit<'_> {
     /// The unit normal on the side that the ray came from.
-    fn normal(&self) -> glam::DVec3 {
+    fn normal(&self) -> DVec3 {
         if self.inside { -self.surface.normal } else { self.surface.normal }
     }
 }

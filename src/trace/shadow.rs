@@ -5,7 +5,11 @@ use std::ops::ControlFlow;
 use glam::DVec3;
 
 use super::signature::hash;
-use crate::{color::Rgb, geometry::Ray, scene::Scene};
+use crate::{
+    color::Rgb,
+    geometry::{Crossing, Ray},
+    scene::Scene,
+};
 
 /// The question how much of a light arrives at a hit, and the answer.
 #[derive(Clone, Copy, Debug)]
@@ -29,11 +33,19 @@ pub(super) struct Shadows<'a> {
     rays: Vec<Ray>,
     /// The transmissive surfaces on the way of each ray: the ray, the distance, the primitive.
     passed: Vec<(u32, f64, u32)>,
+    /// Whether anything opaque is on the way of each ray.
+    blocked: Vec<bool>,
 }
 
 impl<'a> Shadows<'a> {
     pub(super) fn new(scene: &'a Scene) -> Self {
-        Self { scene, questions: Vec::new(), rays: Vec::new(), passed: Vec::new() }
+        Self {
+            scene,
+            questions: Vec::new(),
+            rays: Vec::new(),
+            passed: Vec::new(),
+            blocked: Vec::new(),
+        }
     }
 
     pub(super) fn clear(&mut self) {
@@ -55,16 +67,18 @@ impl<'a> Shadows<'a> {
     /// Answers the questions: a transmittance of 0 behind anything opaque, and the product of the transmissions of all
     /// surfaces crossed, without refraction. The rays end in the light at `target`.
     pub(super) fn cast(&mut self, target: DVec3) -> &[Shadow] {
-        let Self { scene, questions, rays, passed } = self;
-        scene.accel().any_crossing_packet(rays, target, |index, primitive, crossing| {
-            if scene.material(primitive).is_transmissive() {
-                passed.push((index, crossing.t, primitive));
-                ControlFlow::Continue(())
-            } else {
-                questions[index as usize].transmittance = Rgb::ZERO;
-                ControlFlow::Break(())
-            }
-        });
+        let Self { scene, questions, rays, passed, blocked } = self;
+        blocked.clear();
+        blocked.resize(rays.len(), false);
+        let opaque = |primitive| !scene.material(primitive).is_transmissive();
+        let visit = |index, primitive, crossing: Crossing| {
+            passed.push((index, crossing.t, primitive));
+            ControlFlow::Continue(())
+        };
+        scene.accel().is_blocked_packet(rays, target, opaque, visit, blocked);
+        for (question, _) in questions.iter_mut().zip(&*blocked).filter(|(_, blocked)| **blocked) {
+            question.transmittance = Rgb::ZERO;
+        }
         // A product rounds differently in another order, and the tree's order is not the scene's.
         passed.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
         for (index, _, primitive) in passed.iter() {

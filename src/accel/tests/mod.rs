@@ -1,6 +1,7 @@
 //! Every answer is that of the brute-force reference, to the bit, with any instructions.
 
 mod lanes;
+mod packets;
 mod scenes;
 
 use std::ops::ControlFlow;

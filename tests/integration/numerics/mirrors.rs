@@ -5,7 +5,9 @@ use whitted::accel::brute;
 use whitted::geometry::{Polygon, Quad, Ray, Shape, Triangle, reflect};
 
 use super::big::{big, big_vec};
+use super::oracle::UNIT;
 use super::random::{Random, rays};
+use super::subject::vector;
 
 /// The ray after `bounces` mirror reflections, or at which bounce it got out.
 fn bounce(shapes: &[Shape], mut ray: Ray, bounces: usize) -> Result<(Ray, DVec3), usize> {
@@ -116,56 +118,99 @@ fn room(kind: &str, edges: [DVec3; 3]) -> Vec<Shape> {
     shapes
 }
 
-/// A ray that bounces in a closed room stays there, also when each bounce is sent to within 10⁻ᵏ of an edge.
-#[test]
-fn closed_rooms() {
-    let mut random = Random::new(16);
+/// The shapes of rooms: square to the axes, turned, and with acute angles.
+fn outlines() -> [(&'static str, [DVec3; 3]); 3] {
     let slanted = [EDGES[0], EDGES[1] + EDGES[0] * 0.5, EDGES[2] - EDGES[1] * 0.75];
-    let mut table = vec![];
+    [("square", [DVec3::X, DVec3::Y, DVec3::Z]), ("turned", EDGES), ("slanted", slanted)]
+}
+
+fn inside(edges: &[DVec3; 3], random: &mut Random) -> DVec3 {
+    edges.iter().fold(DVec3::ZERO, |p, e| p + e * random.between(0.1, 0.9))
+}
+
+/// How near, in roundings of the room's size, a line may come to an edge and still have to be kept in: at each bounce a
+/// point is rounded and the next ray starts a few roundings beside it, which in an acute corner may be outside.
+const EDGE_MARGIN: f64 = 64.0;
+
+/// The distance of the ray's line from the nearest edge of the room, in roundings of the room's size.
+fn edge_margin(edges: &[DVec3; 3], ray: &Ray) -> f64 {
+    let size = edges.iter().map(|e| e.length()).sum::<f64>();
+    let distance = |axis: usize, corner: DVec3| {
+        let across = edges[axis].cross(ray.dir).normalize();
+        across.dot(corner - ray.origin).abs()
+    };
+    let all =
+        corners(*edges).map(|c| (0..3).map(|axis| distance(axis, c)).fold(f64::MAX, f64::min));
+    all.into_iter().fold(f64::MAX, f64::min) / (UNIT * size)
+}
+
+/// Sends rays made by `aim` from points inside each room and fails if one gets out within `bounces`.
+fn check_rooms(
+    paths: usize,
+    bounces: usize,
+    mut aim: impl FnMut(&[DVec3; 3], &mut Random) -> DVec3,
+) -> usize {
+    let mut random = Random::new(16);
+    let mut bounced = 0;
     for kind in ["quads", "polygons", "triangles"] {
-        for (name, edges) in
-            [("axis", [DVec3::X, DVec3::Y, DVec3::Z]), ("turned", EDGES), ("slanted", slanted)]
-        {
+        for (name, edges) in outlines() {
             let shapes = room(kind, edges);
-            for k in [1, 3] {
-                let miss = if k == 17 { 0.0 } else { 10.0_f64.powi(-k) };
-                let mut out = 0;
-                let paths = rays(40);
-                for _ in 0..paths {
-                    let inside = |random: &mut Random| {
-                        edges.iter().fold(DVec3::ZERO, |p, e| p + e * random.between(0.1, 0.9))
-                    };
-                    let start = inside(&mut random);
-                    let mut ray = Ray::new(start, inside(&mut random) - start);
-                    for bounce in 0..100 {
-                        let Some(hit) = brute::nearest(&shapes, &ray, f64::INFINITY) else {
-                            out += 1;
-                            break;
-                        };
-                        let surface = shapes[hit.primitive as usize].surface(&ray, &hit);
-                        let inward = ray.dir.dot(surface.normal) > 0.0;
-                        let mut dir = reflect(ray.dir, surface.normal);
-                        if bounce % 3 == 0 {
-                            // To a point near an edge.
-                            let axis = random.below(3);
-                            let [along, a, b] = [0, 1, 2].map(|j| edges[(axis + j) % 3]);
-                            let near =
-                                |random: &mut Random| if random.flip() { miss } else { 1.0 - miss };
-                            let target = along * random.unit()
-                                + a * near(&mut random)
-                                + b * near(&mut random);
-                            let towards = target - surface.point;
-                            if towards.dot(surface.normal) * dir.dot(surface.normal) > 0.0 {
-                                dir = towards;
-                            }
-                        }
-                        ray = surface.leave(&hit, dir, inward);
-                    }
+            for _ in 0..paths {
+                let start = inside(&edges, &mut random);
+                let ray = Ray::new(start, aim(&edges, &mut random) - start);
+                if let Err(bounce) = stay(&shapes, &edges, ray, bounces, &mut bounced) {
+                    let (origin, dir) = (vector(ray.origin), vector(ray.dir));
+                    panic!(
+                        "out of a {name} room of {kind} at bounce {bounce}: Ray::new({origin}, {dir})"
+                    );
                 }
-                table.push(format!("{kind}, {name}, 10^-{k}: {out} of {paths} out"));
             }
         }
     }
-    println!("{}", table.join("\n"));
-    assert!(table.iter().all(|line| line.contains(": 0 of")), "{}", table.join("\n"));
+    bounced
+}
+
+/// Follows a ray until it has bounced often enough or comes too near an edge to tell; or at which bounce it got out.
+fn stay(
+    shapes: &[Shape],
+    edges: &[DVec3; 3],
+    mut ray: Ray,
+    bounces: usize,
+    bounced: &mut usize,
+) -> Result<(), usize> {
+    for k in 0..bounces {
+        if edge_margin(edges, &ray) < EDGE_MARGIN {
+            break;
+        }
+        ray = bounce(shapes, ray, 1).map_err(|_| k)?.0;
+        *bounced += 1;
+    }
+    Ok(())
+}
+
+#[test]
+fn closed_rooms() {
+    let bounced = check_rooms(rays(10), 2000, inside);
+    println!("closed rooms: {bounced} bounces inside");
+    assert!(bounced >= rays(10) * 9 * 1900, "{bounced} bounces");
+}
+
+/// Into every edge and corner of a room, 10⁻ᵏ beside it, and out again by some bounces.
+#[test]
+fn edges_of_rooms() {
+    for k in 1..=12 {
+        let bounced = check_rooms(rays(600), 12, |edges, random| {
+            let axis = random.below(3);
+            let [along, a, b] = [0, 1, 2].map(|j| edges[(axis + j) % 3]);
+            let mut near = || {
+                let miss = 10.0_f64.powi(-k) * random.between(0.5, 2.0);
+                if random.flip() { miss } else { 1.0 - miss }
+            };
+            let (u, v, corner) = (near(), near(), near());
+            let place = if random.flip() { corner } else { random.unit() };
+            along * place + a * u + b * v
+        });
+        println!("10^-{k} from the edges of rooms: {bounced} bounces");
+        assert!(bounced >= rays(600) * 9 * 4, "10^-{k}: {bounced} bounces");
+    }
 }

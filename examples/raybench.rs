@@ -1,0 +1,101 @@
+//! The ray-query benchmark of docs/stress.md, in the words of `benches/peers/raybench.cpp`: a line of CSV a measurement.
+//!
+//! `cargo run --release --example raybench -- spheres:1e5 [REPEATS]`, or `icos:1000:3`, or `obj:FILE`. One thread, except
+//! for the build; the best of the repeats.
+#![allow(clippy::print_stdout, reason = "its output is a table")]
+
+#[path = "../benches/stress/mod.rs"]
+#[allow(dead_code, reason = "shared with the other benches")]
+mod stress;
+
+use std::{ops::ControlFlow, time::Instant};
+
+use stress::{Geometry, SIDE};
+use whitted::{
+    accel::Accel,
+    geometry::{Hit, Ray},
+};
+
+fn main() {
+    let mut arguments = std::env::args().skip(1);
+    let what = arguments.next().expect("spheres:N, icos:N:LEVEL or obj:FILE");
+    let repeats: usize =
+        arguments.next().map_or(5, |text| text.parse().expect("a number of repeats"));
+    let make = || geometry(&what);
+    let print = |measure: &str, value: f64, unit: &str, hits: usize, sum: f64| {
+        println!("whitted,{what},robust,{measure},{value:.6},{unit},{hits},{sum:.9},0");
+    };
+    for threads in [2, 1] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        let build = || {
+            let Geometry { shapes, .. } = make();
+            pool.install(|| timed(|| Accel::build(shapes)).0)
+        };
+        let best = (0..repeats.min(3)).map(|_| build()).fold(f64::INFINITY, f64::min);
+        let plural = if threads == 1 { "" } else { "s" };
+        print(
+            &format!("build_{threads}thread{plural}"),
+            best * 1e3,
+            "ms",
+            make().shapes.len(),
+            0.0,
+        );
+    }
+
+    let Geometry { shapes, bounds } = make();
+    let accel = Accel::build(shapes);
+    let best = |rays: usize, query: &dyn Fn() -> (usize, f64), measure: &str| {
+        let runs: Vec<_> = (0..repeats).map(|_| timed(query)).collect();
+        let seconds = runs.iter().map(|run| run.0).fold(f64::INFINITY, f64::min);
+        let (hits, sum) = runs[0].1;
+        print(measure, rays as f64 / seconds * 1e-6, "Mrays/s", hits, sum);
+    };
+    let count = |hits: &mut dyn Iterator<Item = Option<Hit>>| {
+        hits.flatten().fold((0, 0.0), |(count, sum), hit| (count + 1, sum + hit.t))
+    };
+    let nearest =
+        |rays: &[Ray]| count(&mut rays.iter().map(|ray| accel.nearest(ray, f64::INFINITY)));
+
+    let camera = stress::camera();
+    best(camera.len(), &|| nearest(&camera), "camera_intersect1");
+    let tiles = in_tiles(&camera);
+    let packets = || {
+        let mut hits = [None; 64];
+        tiles.chunks(64).fold((0, 0.0), |(all, sum), rays| {
+            accel.nearest_packet(rays, &mut hits[..rays.len()]);
+            let (hit, t) = count(&mut hits[..rays.len()].iter().copied());
+            (all + hit, sum + t)
+        })
+    };
+    best(tiles.len(), &packets, "camera_coherent");
+    let shadow = stress::shadow(&accel);
+    let blocked = |ray: &&Ray| accel.is_blocked(ray, 1.0, |_| true, |_, _| ControlFlow::Break(()));
+    best(shadow.len(), &|| (shadow.iter().filter(blocked).count(), 0.0), "shadow_occluded1");
+    let random = stress::random(&bounds, 1_000_000);
+    best(random.len(), &|| nearest(&random), "random_intersect1");
+}
+
+fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
+    let started = Instant::now();
+    let result = work();
+    (started.elapsed().as_secs_f64(), result)
+}
+
+fn geometry(what: &str) -> Geometry {
+    let number = |text: &str| text.parse::<f64>().expect("a number") as usize;
+    match what.split_once(':').expect("a kind and a number or file") {
+        ("spheres", count) => stress::spheres(number(count)),
+        ("icos", rest) => {
+            let (count, level) = rest.split_once(':').expect("icos:N:LEVEL");
+            stress::icospheres(number(count), number(level))
+        }
+        ("obj", file) => stress::mesh(&std::fs::read_to_string(file).expect("a model")),
+        _ => panic!("spheres:N, icos:N:LEVEL or obj:FILE"),
+    }
+}
+
+/// The camera's rays in squares of 8 × 8.
+fn in_tiles(rays: &[Ray]) -> Vec<Ray> {
+    let corners = (0..SIDE / 8).flat_map(|j| (0..SIDE / 8).map(move |i| (8 * i, 8 * j)));
+    corners.flat_map(|(x, y)| (0..64).map(move |k| rays[(y + k / 8) * SIDE + x + k % 8])).collect()
+}
