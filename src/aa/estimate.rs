@@ -18,8 +18,9 @@ const CORRECTED_CURVE: f32 = 0.008;
 /// differences in both directions are twelve times that.
 const NOISE: f32 = 4.2;
 
-/// How far, in logarithms, the error goes from that of an even pattern to that of random samples in the busiest places.
-const BUSY: f32 = 0.6;
+/// How far, in logarithms, the error of a sequence goes from that of an even pattern to that of random samples in the
+/// busiest places.
+pub const BUSY: f32 = 0.6;
 
 /// The least of [`Look::busy`] for a pixel between two that differ from it.
 const BETWEEN: f32 = 0.75;
@@ -164,12 +165,12 @@ impl Spread {
     /// The error of the mean of samples whose pattern leaves the share `kappa` of the variance at a single edge.
     ///
     /// More kinds of surfaces mean more edges, which even patterns deal with less well; so do changes all around, where edges
-    /// of two kinds may be many. But no mean is worse than that of random samples.
+    /// of two kinds may be many: `busy` is how far, in logarithms, the error goes to that of random samples. But no mean is worse than that of random samples.
     pub fn error(&self, kappa: f32, busy: f32) -> f32 {
         let edges = self.kinds().max(2) as f32 - 1.0;
         let random = 1.0 / self.count.max(1) as f32;
         let share = (kappa * edges.powf(0.45)).min(random);
-        let share = if busy > 0.0 { share * (random / share).powf(BUSY * busy) } else { share };
+        let share = if busy > 0.0 { share * (random / share).powf(busy) } else { share };
         share * self.variance()
     }
 }
@@ -221,7 +222,7 @@ pub fn bare_sequence_share(points: u32) -> f32 {
 
 /// The share of the variance that a grid of `side` × `side` samples leaves.
 pub fn grid_share(side: u32) -> f32 {
-    by_logarithms(&[(2.0, 0.062), (3.0, 0.021), (4.0, 0.011), (6.0, 0.004)], side as f32)
+    by_logarithms(&[(2.0, 0.068), (3.0, 0.021), (4.0, 0.011), (6.0, 0.004)], side as f32)
 }
 
 /// How often the signature changes between neighbours of a grid of `side` × `side` samples, given row by row: 0 for what one edge

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::estimate::{Spread, all_alike, quarters_share, sequence_share, sequence_unseen};
+use super::estimate::{BUSY, Spread, all_alike, quarters_share, sequence_share, sequence_unseen};
 use super::levels::{levels, squared_distance};
 use crate::color::Rgb;
 
@@ -112,7 +112,7 @@ impl Refined {
     /// The colour's squared error; `contrast` and `busy` are those of the pixel's [`Look`](super::estimate::Look), zero unless
     /// suspect.
     pub fn error(&self, contrast: f32, busy: f32) -> f32 {
-        let seen = self.spread.error(sequence_share(self.points), busy);
+        let seen = self.spread.error(sequence_share(self.points), BUSY * busy);
         let seen = if self.points >= 8 {
             seen.max(quarters_share(self.points) * self.quarters.variance())
         } else {

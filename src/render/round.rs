@@ -48,6 +48,8 @@ pub(super) struct Pixel {
     pub(super) contrast: f32,
     /// How often things change around, from 0 to 1; zero unless suspect.
     pub(super) busy: f32,
+    /// Samples of the sequence that it gets whatever its error.
+    pub(super) least: u32,
     pub(super) refined: Option<Box<Refined>>,
 }
 
@@ -87,7 +89,7 @@ pub(super) fn corner_rays(pixel: &Pixel) -> f32 {
 }
 
 pub(super) fn wants_corners(pixel: &Pixel, center: &Sample, threshold: Threshold) -> bool {
-    is_above(threshold, pixel.error, corner_rays(pixel) * center.rays as f32)
+    pixel.least > 0 || is_above(threshold, pixel.error, corner_rays(pixel) * center.rays as f32)
 }
 
 /// What the pixels of a tile need to know to get their next samples.
@@ -149,7 +151,9 @@ impl Round<'_> {
         };
         let (x, y) = tile.pixel_at(index);
         let rays = (points - refined.points()) * self.centers.at(x, y).rays;
-        is_picked(self.threshold, x, y) && is_above(self.threshold, pixel.error, rays as f32)
+        is_picked(self.threshold, x, y)
+            && (refined.points() < pixel.least
+                || is_above(self.threshold, pixel.error, rays as f32))
     }
 
     /// Gives the pixels that want them the samples of their next stage; returns whether there was time for all.

@@ -143,3 +143,44 @@ fn a_part_is_that_of_the_whole() {
         }
     }
 }
+
+/// Cylinders a twentieth of a pixel wide and spheres smaller than a pixel, bright on black: the rays of `adaptive` meet them in
+/// every pixel that they cross for two thirds of a side or more, and look into every pixel that they touch; samples alone find
+/// a few.
+#[test]
+fn thin_things_are_found() {
+    let stage = r"
+        resolution = [72, 72]
+        depth = 1
+        background = [0, 0, 0]
+        camera = { eye = [0, 0, 10], look_at = [0, 0, 0], up = [0, 1, 0], vertical_fov = 90 }
+        light = []
+        material.white = { ambient = 1 }
+    ";
+    // A pixel is 20/72 = 0.278 wide at z = 0.
+    let scene = support::scene(&format!(
+        r#"{stage}
+        object = [
+            {{ material = "white", shape.cylinder = {{ base = [-7.9, -9.5, 0], top = [-7.9, 9.5, 0], radius = 0.00694, ends = "open" }} }},
+            {{ material = "white", shape.cylinder = {{ base = [-7, -9.1, 0], top = [9, 8.3, 0], radius = 0.00694, ends = "open" }} }},
+            {{ material = "white", shape.sphere = {{ center = [5.07, -6.2, 0], radius = 0.06 }} }},
+        ]"#
+    ));
+    let seen = |aa: &str| {
+        let film = rendered(&scene, mode(aa)).film;
+        (film.pixels().iter().filter(|color| color.x > 0.0).count(), film)
+    };
+    // The upright one crosses 68 whole pixels, the slanted one 58 columns and 63 rows.
+    let (truth, reference) = seen("sobol:1024");
+    assert!((180..220).contains(&truth), "{truth}");
+    let (blind, _) = seen("none");
+    let (found, film) = seen("adaptive:4");
+    assert!(blind * 5 < truth, "{blind} of {truth}");
+    let crossed = reference.pixels().iter().zip(film.pixels()).filter(|(t, _)| t.x > 0.035);
+    let missed = crossed.filter(|(_, color)| color.x == 0.0).count();
+    assert_eq!(missed, 0, "{found} of {truth}");
+    let touched = reference.pixels().iter().zip(film.samples()).filter(|(t, _)| t.x > 0.0);
+    assert!(touched.into_iter().all(|(_, rays)| *rays >= 10), "every pixel touched is sampled");
+    let rays: u32 = film.samples().iter().sum();
+    assert!(rays < 6 * SIDE * SIDE, "{rays}");
+}
