@@ -141,6 +141,9 @@ impl Adaptive {
                 if !round.give(tile, &wanting, &mut own, &mut changed, (sampler, scratch), spent) {
                     break;
                 }
+                if matches!(threshold, Threshold::PerRayOfSome(..)) {
+                    break; // how much was worth it is known for one stage
+                }
             }
             if changed.contains(&true) {
                 let mut colors = colors.lock().unwrap_or_else(PoisonError::into_inner);

@@ -31,8 +31,8 @@ pub(super) enum Threshold {
     Error(f32),
     /// Its squared error for each ray of the next stage is at least this.
     PerRay(f32),
-    /// The same, for a share of the pixels, picked by hash.
-    PerRayOfSome(f32, f32),
+    /// The same, for a share of the pixels, picked by hash with the number given; and for one stage only.
+    PerRayOfSome(f32, f32, u32),
 }
 
 /// What is known of a pixel.
@@ -64,15 +64,15 @@ pub(super) fn is_disputed(centers: &Plane<Sample>, x: i64, y: i64) -> bool {
 pub(super) fn is_above(threshold: Threshold, error: f32, rays: f32) -> bool {
     match threshold {
         Threshold::Error(limit) => error > 0.0 && error >= limit,
-        Threshold::PerRay(limit) | Threshold::PerRayOfSome(limit, _) => error >= limit * rays,
+        Threshold::PerRay(limit) | Threshold::PerRayOfSome(limit, ..) => error >= limit * rays,
     }
 }
 
 /// Whether the threshold is for this pixel at all.
 pub(super) fn is_picked(threshold: Threshold, x: i64, y: i64) -> bool {
     match threshold {
-        Threshold::PerRayOfSome(_, share) if share < 1.0 => {
-            let hash = mix((x as u64) << 32 ^ y as u64 ^ 0xC0FF_EE00_C0FF_EE00) >> 40;
+        Threshold::PerRayOfSome(_, share, round) if share < 1.0 => {
+            let hash = mix((x as u64) << 32 ^ y as u64 ^ mix(u64::from(round))) >> 40;
             (hash as f32) < share * (1_u32 << 24) as f32
         }
         _ => true,
