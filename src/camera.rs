@@ -108,6 +108,21 @@ pub struct View {
 }
 
 impl View {
+    /// Where a point in front of the camera is on the film, in pixels as for [`View::ray`], and the length that a pixel covers there.
+    pub fn place(&self, point: DVec3) -> Option<(DVec2, f64)> {
+        let pixel = self.right.length();
+        let forward = self.down.cross(self.right).normalize();
+        let forward = if forward.dot(self.corner) < 0.0 { -forward } else { forward };
+        let to = point - self.eye;
+        let depth = to.dot(forward);
+        if !(depth > 0.0) {
+            return None;
+        }
+        let off = to / depth - self.corner;
+        let place = DVec2::new(off.dot(self.right), off.dot(self.down)) / (pixel * pixel);
+        Some((place, pixel * depth))
+    }
+
     /// The ray, of unit direction, through a place on the film in pixels from its upper left corner: the centre of the first
     /// pixel is (0.5, 0.5).
     pub fn ray(&self, position: DVec2) -> Ray {
@@ -139,6 +154,26 @@ mod tests {
                 "{i}, {j}: {}",
                 ray.dir
             );
+        }
+    }
+
+    /// Oracle: a ray through a place, and a point on it.
+    #[test]
+    fn points_are_found_at_their_places() {
+        let camera =
+            Camera::try_new(DVec3::new(3.0, 1.0, -2.0), DVec3::new(-5.0, 4.0, 9.0), DVec3::Y, 50.0);
+        let view = camera.expect("a camera").view(320, 200);
+        for (x, y, t) in
+            [(0.5, 0.5, 1.0), (160.0, 100.0, 30.0), (319.0, 3.25, 7.5), (-40.0, 250.0, 2.0)]
+        {
+            let ray = view.ray(DVec2::new(x, y));
+            let (place, pixel) = view.place(ray.at(t)).expect("in front");
+            assert!((place - DVec2::new(x, y)).length() < 1e-9, "{place}");
+            let beside = view.ray(DVec2::new(x + 1e-3, y));
+            let forward = view.ray(DVec2::new(160.0, 100.0)).dir;
+            let reach = t * ray.dir.dot(forward) / beside.dir.dot(forward);
+            assert!(((beside.at(reach) - ray.at(t)).length() / 1e-3 / pixel - 1.0).abs() < 1e-6);
+            assert!(view.place(ray.at(-t)).is_none());
         }
     }
 

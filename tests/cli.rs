@@ -152,6 +152,20 @@ fn bad_values_are_refused_on_one_line_before_anything_is_written() {
         (&["--threads", "-1"], &["--threads", whole]),
         (&["--depth", "0"], &["--depth", whole]),
         (&["--depth", "x"], &["--depth", whole]),
+        (&["--aa", "adaptive:-1"], &["--aa", "adaptive:-1", "zero or more"]),
+        (&["--aa", "adaptive:nan"], &["--aa", "error in levels"]),
+        (&["--aa", "adaptive:1,0"], &["--aa", "from 1 to"]),
+        (&["--max-error", "-1"], &["--max-error", "from 0 to 255"]),
+        (&["--max-error", "nan"], &["--max-error", "from 0 to 255"]),
+        (&["--max-error", "1", "--aa", "grid:2"], &["--max-error", "grid:2", "adaptive"]),
+        (&["--max-error", "1", "--time-limit", "1"], &["--max-error", "--time-limit"]),
+        (&["--time-limit", "0"], &["--time-limit", "above 0"]),
+        (&["--time-limit", "inf"], &["--time-limit", "above 0"]),
+        (&["--time-limit", "1", "--aa", "none"], &["--time-limit", "none", "adaptive"]),
+        (&["--crop", "1,2,3"], &["--crop", "four whole numbers"]),
+        (&["--crop", "5,5,5,9"], &["--crop", "empty"]),
+        (&["--crop=-1,0,5,5"], &["--crop", "four whole numbers"]),
+        (&["--crop", "0,0,601,5"], &["--crop", "601", "600x600"]),
         (&["--objects", "0"], &["--objects", whole]),
         (&["--objects", "-5"], &["--objects", whole]),
         (&["--objects", "50000001"], &["--objects", "50000000"]),
@@ -418,4 +432,100 @@ fn scenes_are_listed_one_a_line_and_each_renders() {
         assert_done(&run(folder.path(), &["render", name, "--size", "4x3"]));
         assert!(folder.path().join(format!("{name}.png")).is_file(), "{name}");
     }
+}
+
+// Goals, parts and references.
+
+#[test]
+fn a_part_is_cut_from_the_same_picture() {
+    let folder = folder();
+    let size = ["render", "--size", "40x30", "--quiet"];
+    assert_done(&run(folder.path(), &[&size[..], &["-o", "whole.png"]].concat()));
+    assert_done(&run(
+        folder.path(),
+        &[&size[..], &["-o", "part.png", "--crop", "7,9,33,30"]].concat(),
+    ));
+    let read = |name| image::open(folder.path().join(name)).expect("a PNG").into_rgb8();
+    let cut = image::imageops::crop_imm(&read("whole.png"), 7, 9, 26, 21).to_image();
+    assert_eq!(read("part.png"), cut);
+}
+
+#[test]
+fn an_error_is_aimed_at_measured_and_missed_with_a_warning() {
+    let folder = folder();
+    let small = ["render", "--size", "40x30"];
+    assert_done(&run(
+        folder.path(),
+        &[&small[..], &["--aa", "sobol:64", "-o", "truth.png"]].concat(),
+    ));
+    let goal = ["--max-error", "5", "--reference", "truth.png", "--stats", "-"];
+    let output = run(folder.path(), &[&small[..], &goal].concat());
+    assert_done(&output);
+    assert!(!text(&output.stderr).contains("warning"), "{}", text(&output.stderr));
+    let stats: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let error = |key: &str| stats["error"][key].as_f64().expect("a number");
+    assert!(error("estimated_rmse") <= 5.0 && error("squared_per_ray") > 0.0, "{stats}");
+    assert!(error("measured_rmse") < 10.0 && error("measured_rmse") > 2.0, "{stats}");
+    let output =
+        run(folder.path(), &[&small[..], &["--max-error", "0.5", "--aa", "adaptive:0,8"]].concat());
+    assert_done(&output);
+    assert!(text(&output.stderr).starts_with("warning: --max-error 0.5 is not reached"));
+    let output = run(folder.path(), &["render", "--size", "41x30", "--reference", "truth.png"]);
+    assert_refused(&output, 2, &["--reference", "41x30", "40x30"]);
+    assert_refused(&run(folder.path(), &["render", "--reference", "no.png"]), 1, &["no.png"]);
+}
+
+/// Whatever the machine, there is a picture, and it is said if there was no time for more than a ray in each pixel.
+#[test]
+fn a_time_limit_ends_in_a_picture() {
+    let folder = folder();
+    let output = run(folder.path(), &["render", "--size", "64x48", "--time-limit", "0.000001"]);
+    assert_done(&output);
+    assert!(text(&output.stderr).contains("warning: --time-limit 0.000001 is too short"));
+    assert_picture(&fs::read(folder.path().join("assignment.png")).expect("readable"), 64, 48);
+    let output = run(folder.path(), &["render", "--size", "64x48", "--time-limit", "0.3"]);
+    assert_done(&output);
+    assert!(text(&output.stderr).contains("adaptive until the time was up"));
+}
+
+// Comparing.
+
+#[test]
+fn compare_measures_maps_and_judges() {
+    let folder = folder();
+    for (name, aa) in [("a.png", "none"), ("b.png", "grid:4")] {
+        let small = ["render", "--size", "40x30", "--aa", aa, "-o", name];
+        assert_done(&run(folder.path(), &small));
+    }
+    let output = run(folder.path(), &["compare", "a.png", "a.png", "--fail-above", "0"]);
+    assert_done(&output);
+    assert!(text(&output.stdout).contains("RMSE         0.0000"), "{}", text(&output.stdout));
+    let output =
+        run(folder.path(), &["compare", "a.png", "b.png", "--json", "--heatmap", "map.png"]);
+    assert_done(&output);
+    let found: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert!(
+        found["rmse"].as_f64().expect("a number") > 1.0 && found["ssim"].as_f64() < Some(0.999)
+    );
+    assert_picture(&fs::read(folder.path().join("map.png")).expect("readable"), 40, 30);
+    let output = run(folder.path(), &["compare", "a.png", "b.png", "--fail-above", "1"]);
+    assert_eq!(output.status.code(), Some(6));
+    assert!(text(&output.stderr).contains("more than --fail-above 1"), "{}", text(&output.stderr));
+    assert_done(&run(folder.path(), &["render", "--size", "40x31", "-o", "c.png"]));
+    assert_refused(&run(folder.path(), &["compare", "a.png", "c.png"]), 1, &["40x30", "40x31"]);
+    assert_refused(&run(folder.path(), &["compare", "a.png", "no.png"]), 1, &["no.png"]);
+    assert_refused(
+        &run(folder.path(), &["compare", "a.png", "b.png", "--fail-above", "-1"]),
+        2,
+        &["--fail-above"],
+    );
+}
+
+#[test]
+fn a_study_that_cannot_be_written_is_refused_at_once() {
+    let folder = folder();
+    fs::write(folder.path().join("plain"), "kept").expect("written");
+    assert_refused(&run(folder.path(), &["study", "--quick", "-o", "plain"]), 1, &["plain"]);
+    assert_refused(&run(folder.path(), &["study", "nowhere"]), 2, &["nowhere", "assignment"]);
+    assert_eq!(names_in(folder.path()), ["plain"]);
 }

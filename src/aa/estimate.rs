@@ -18,6 +18,13 @@ const CORRECTED_CURVE: f32 = 0.008;
 /// differences in both directions are twelve times that.
 const NOISE: f32 = 4.2;
 
+/// How far, in logarithms, the error of a sequence goes from that of an even pattern to that of random samples in the
+/// busiest places.
+pub const BUSY: f32 = 0.6;
+
+/// The least of [`Look::busy`] for a pixel between two that differ from it.
+const BETWEEN: f32 = 0.75;
+
 /// A pixel's centre among its eight neighbours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
@@ -33,7 +40,13 @@ pub struct Look {
     pub curve: f32,
     /// Squared differences of opposite neighbours, horizontal and vertical.
     pub slope: f32,
+    /// How often the signature changes on the way round: 0 where one edge or none passes by, 1 where six or more do. Where
+    /// neighbours at opposite sides both differ, which no single edge makes, it is at least 3/4.
+    pub busy: f32,
 }
+
+/// The neighbours on the way round.
+const RING: [usize; 8] = [0, 1, 2, 5, 8, 7, 6, 3];
 
 /// The neighbours in the order of [`Look::at`], and what they count in [`Look::edge`].
 const NEIGHBOURS: [(usize, f32); 8] =
@@ -53,7 +66,14 @@ impl Look {
         }
         let bend =
             |a: usize, b: usize| (levels[a] + levels[b] - 2.0 * center).length_squared() / 3.0;
+        let changes = (0..8).filter(|&k| signatures[RING[k]] != signatures[RING[(k + 1) % 8]]);
+        let changes = changes.count() as f32;
+        let between = [(0, 8), (1, 7), (2, 6), (3, 5)]
+            .iter()
+            .any(|&(a, b)| signatures[a] != signature && signatures[b] != signature);
+        let busy = ((changes - 2.0) / 4.0).clamp(0.0, 1.0);
         Self {
+            busy: if between { busy.max(BETWEEN) } else { busy },
             suspect: signatures.iter().any(|s| *s != signature),
             inner: [1, 3, 5, 7].iter().all(|&place| signatures[place] == signature),
             edge,
@@ -144,11 +164,13 @@ impl Spread {
 
     /// The error of the mean of samples whose pattern leaves the share `kappa` of the variance at a single edge.
     ///
-    /// More kinds of surfaces mean more edges, which even patterns deal with less well; but no mean is worse than that of
-    /// random samples.
-    pub fn error(&self, kappa: f32) -> f32 {
+    /// More kinds of surfaces mean more edges, which even patterns deal with less well; so do changes all around, where edges
+    /// of two kinds may be many: `busy` is how far, in logarithms, the error goes to that of random samples. But no mean is worse than that of random samples.
+    pub fn error(&self, kappa: f32, busy: f32) -> f32 {
         let edges = self.kinds().max(2) as f32 - 1.0;
-        let share = (kappa * edges.powf(0.45)).min(1.0 / self.count.max(1) as f32);
+        let random = 1.0 / self.count.max(1) as f32;
+        let share = (kappa * edges.powf(0.45)).min(random);
+        let share = if busy > 0.0 { share * (random / share).powf(busy) } else { share };
         share * self.variance()
     }
 }
@@ -176,6 +198,22 @@ pub fn sequence_unseen(points: u32) -> f32 {
     by_logarithms(&SHARES, points.max(1) as f32)
 }
 
+/// The part of what quarters of a sequence's `points` differ by that the whole is off by at least.
+///
+/// Each quarter is an even pattern as well. Were the samples random, the variance of the quarters' mean would be the whole
+/// error; at a single edge it is two to four times the error, because the whole is more even than its quarters.
+pub fn quarters_share(points: u32) -> f32 {
+    by_logarithms(&[(8.0, 0.20), (16.0, 0.28), (32.0, 0.35), (64.0, 0.45)], points.max(8) as f32)
+        .min(1.0)
+}
+
+/// The squared error of a mean of `count` samples in a busy place that all met the same, as a share of the neighbours' mean squared
+/// difference: the expected square of the part not seen, if any part was as likely before.
+pub fn all_alike(count: u32) -> f32 {
+    let n = count as f32;
+    2.0 / ((n + 2.0) * (n + 3.0))
+}
+
 /// The share of the variance that `points` of the sequence leave by themselves.
 pub fn bare_sequence_share(points: u32) -> f32 {
     const SHARES: [(f32, f32); 4] = [(1.0, 1.0), (4.0, 0.036), (16.0, 0.0070), (64.0, 0.0011)];
@@ -184,10 +222,67 @@ pub fn bare_sequence_share(points: u32) -> f32 {
 
 /// The share of the variance that a grid of `side` × `side` samples leaves.
 pub fn grid_share(side: u32) -> f32 {
-    by_logarithms(&[(2.0, 0.062), (3.0, 0.021), (4.0, 0.011), (6.0, 0.004)], side as f32)
+    by_logarithms(&[(2.0, 0.068), (3.0, 0.021), (4.0, 0.011), (6.0, 0.004)], side as f32)
+}
+
+/// How often the signature changes between neighbours of a grid of `side` × `side` samples, given row by row: 0 for what one edge
+/// makes at most, 1 for half of all pairs, as in noise.
+pub fn grid_busy(signatures: impl Iterator<Item = u32> + Clone, side: u32) -> f32 {
+    if side < 3 {
+        return 0.0; // one edge makes half of all pairs differ
+    }
+    let (side, next) = (side as usize, signatures.clone());
+    let across = signatures.clone().zip(next.clone().skip(1)).enumerate();
+    let across = across.filter(|(k, (a, b))| (k + 1) % side != 0 && a != b).count();
+    let down = signatures.zip(next.skip(side)).filter(|(a, b)| a != b).count();
+    let share = (across + down) as f32 / (2 * side * (side - 1)) as f32;
+    let edge = 1.0 / side as f32;
+    ((share - edge) / (0.5 - edge)).clamp(0.0, 1.0)
 }
 
 /// The share of the neighbours' contrast that may hide between the equal samples of such a grid.
 pub fn grid_unseen(side: u32) -> f32 {
     by_logarithms(&[(2.0, 2.9e-3), (3.0, 7.3e-4), (4.0, 2.5e-4), (6.0, 7e-5)], side as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Oracle: the points of the tables, and straight lines in logarithms between and beyond them.
+    #[test]
+    fn shares_go_through_their_points() {
+        for (points, share) in [(0, 0.078), (1, 0.078), (4, 0.036), (16, 0.007), (64, 0.0011)] {
+            assert!((sequence_share(points) / share - 1.0).abs() < 1e-5, "{points}");
+        }
+        assert!((grid_share(4) / 0.011 - 1.0).abs() < 1e-5);
+        assert!((sequence_share(128) / (0.0011 * 0.0011 / 0.0027) - 1.0).abs() < 1e-5);
+        assert!((2..64).all(|side| grid_share(side + 1) < grid_share(side)));
+        assert!((1..4096).all(|points| sequence_unseen(points + 1) < sequence_unseen(points)));
+    }
+
+    #[test]
+    fn an_edge_is_not_busy_and_noise_is() {
+        let pixel = |signatures: [u32; 9]| Look::at(&[Vec3::ZERO; 9], &signatures);
+        assert_eq!(pixel([1, 1, 2, 1, 1, 2, 1, 1, 2]).busy, 0.0);
+        assert_eq!(pixel([1, 2, 1, 2, 1, 2, 1, 2, 1]).busy, 1.0);
+        assert!(!pixel([7; 9]).suspect && pixel([7; 9]).inner);
+        let edge = |side: u32| (0..side * side).map(move |k| u32::from(k % side < 2));
+        assert_eq!([2, 3, 4, 8].map(|side| grid_busy(edge(side), side)), [0.0; 4]);
+        let board = (0..16).map(|k| (k + k / 4) % 2);
+        assert_eq!(grid_busy(board, 4), 1.0);
+    }
+
+    /// Oracle: the variance of a handful of numbers, worked by hand; grey 0 is level 0, grey 1 is level 255.
+    #[test]
+    fn spread_is_the_unbiased_variance() {
+        let mut spread = Spread::about(Vec3::splat(100.0));
+        for (grey, signature) in [(0.0, 5), (1.0, 6), (1.0, 6), (0.0, 5)] {
+            spread.add(Rgb::splat(grey), signature);
+        }
+        let expected = 4.0 * 127.5_f32.powi(2) / 3.0;
+        assert!((spread.variance() / expected - 1.0).abs() < 1e-4, "{}", spread.variance());
+        assert_eq!((spread.kinds(), spread.count(), spread.only_signature()), (2, 4, None));
+        assert!((spread.mean().x - 127.5).abs() < 1e-3);
+    }
 }

@@ -1,7 +1,9 @@
 //! A pixel that got more than its centre.
 
-use super::estimate::{Spread, sequence_share, sequence_unseen};
-use super::levels::levels;
+use glam::Vec3;
+
+use super::estimate::{BUSY, Spread, all_alike, quarters_share, sequence_share, sequence_unseen};
+use super::levels::{levels, squared_distance};
 use crate::color::Rgb;
 
 /// A camera ray's answer.
@@ -23,6 +25,47 @@ pub struct Refined {
     sum: Rgb,
     points: u32,
     spread: Spread,
+    quarters: Quarters,
+}
+
+/// The sums of the samples' display levels over each quarter of the sequence so far.
+#[derive(Clone, Copy, Debug, Default)]
+struct Quarters {
+    sums: [Vec3; 4],
+    counts: [u32; 4],
+    /// The samples when the stage began, and those it is to end with.
+    from: u32,
+    to: u32,
+}
+
+impl Quarters {
+    /// Makes room for the samples up to number `to`: two new quarters, the old ones joined by two.
+    fn begin(&mut self, from: u32, to: u32) {
+        if from > 0 {
+            self.sums =
+                [self.sums[0] + self.sums[1], self.sums[2] + self.sums[3], Vec3::ZERO, Vec3::ZERO];
+            self.counts = [self.counts[0] + self.counts[1], self.counts[2] + self.counts[3], 0, 0];
+        }
+        (self.from, self.to) = (from, to);
+    }
+
+    fn add(&mut self, index: u32, levels: Vec3) {
+        let (first, parts) = if self.from == 0 { (0, 4) } else { (2, 2) };
+        let span = (self.to - self.from).max(1);
+        let quarter = (first + (index - self.from) * parts / span).min(3) as usize;
+        self.sums[quarter] += levels;
+        self.counts[quarter] += 1;
+    }
+
+    /// The variance of the quarters' mean if they were independent.
+    fn variance(&self) -> f32 {
+        if self.counts.contains(&0) {
+            return 0.0;
+        }
+        let means: [Vec3; 4] = std::array::from_fn(|k| self.sums[k] / self.counts[k] as f32);
+        let mean = means.iter().sum::<Vec3>() / 4.0;
+        means.iter().map(|m| squared_distance(*m, mean)).sum::<f32>() / 12.0
+    }
 }
 
 impl Refined {
@@ -35,11 +78,17 @@ impl Refined {
             cross += *color * 0.125;
             spread.add(*color, *signature);
         }
-        Self { cross, sum: Rgb::ZERO, points: 0, spread }
+        Self { cross, sum: Rgb::ZERO, points: 0, spread, quarters: Quarters::default() }
+    }
+
+    /// Announces that the samples up to number `to` come next.
+    pub fn begin(&mut self, to: u32) {
+        self.quarters.begin(self.points, to);
     }
 
     /// Takes in the next sample of the pixel's sequence.
     pub fn add(&mut self, sample: &Sample) {
+        self.quarters.add(self.points, levels(sample.color));
         self.sum += sample.color;
         self.points += 1;
         self.spread.add(sample.color, sample.signature);
@@ -60,11 +109,20 @@ impl Refined {
         (self.sum + self.cross * weight) / (self.points as f32 + weight)
     }
 
-    /// The colour's squared error; `contrast` is that of the pixel's [`Look`](super::estimate::Look), zero unless suspect.
-    pub fn error(&self, contrast: f32) -> f32 {
-        let seen = self.spread.error(sequence_share(self.points));
-        let alike = self.spread.kinds() == 1;
-        if alike { seen + sequence_unseen(self.points) * contrast } else { seen }
+    /// The colour's squared error; `contrast` and `busy` are those of the pixel's [`Look`](super::estimate::Look), zero unless
+    /// suspect.
+    pub fn error(&self, contrast: f32, busy: f32) -> f32 {
+        let seen = self.spread.error(sequence_share(self.points), BUSY * busy);
+        let seen = if self.points >= 8 {
+            seen.max(quarters_share(self.points) * self.quarters.variance())
+        } else {
+            seen
+        };
+        if self.spread.kinds() > 1 {
+            return seen;
+        }
+        let hidden = busy * all_alike(self.spread.count()) / 8.0;
+        seen + sequence_unseen(self.points).max(hidden) * contrast
     }
 }
 

@@ -234,6 +234,16 @@ impl Shape {
         }
     }
 
+    /// The axis and radius of a round shape, which is all within that radius of its axis; flat shapes have none.
+    pub(crate) fn axis(&self) -> Option<([DVec3; 2], f64)> {
+        match self {
+            Self::Sphere(s) => Some(([s.center(); 2], s.radius())),
+            Self::Cylinder(s) => Some((s.axis_points(), s.radius())),
+            Self::Cone(s) => Some((s.axis_points(), s.radius())),
+            _ => None,
+        }
+    }
+
     /// Calls `visit` with every point that defines the shape, whose coordinates a change of origin must carry.
     pub(crate) fn for_each_point(&self, mut visit: impl FnMut(DVec3)) {
         match self {

@@ -52,11 +52,12 @@ impl Adaptive {
         let spent = centers.values().iter().map(|sample| u64::from(sample.rays)).sum();
         let colors = Mutex::new(Plane::new(*area, Rgb::ZERO));
         let pixels = Mutex::new(Plane::new(*area, Pixel::default()));
+        let has_thin = (crew.new_sampler)().has_thin();
         crew.run(
             area,
             false,
             || false,
-            |_, _, tile| {
+            |sampler, _, tile| {
                 let window = Window::of_centers(tile, &centers);
                 let (own_pixels, own_colors): (Vec<_>, Vec<_>) = tile
                     .pixels()
@@ -70,7 +71,13 @@ impl Adaptive {
                         let pixel = Pixel {
                             suspect: look.suspect,
                             error: look.center_error(look.inner),
+                            least: if has_thin {
+                                sampler.least_samples(x as u32, y as u32)
+                            } else {
+                                0
+                            },
                             contrast: if look.suspect { look.contrast } else { 0.0 },
+                            busy: if look.suspect { look.busy } else { 0.0 },
                             ..Pixel::default()
                         };
                         (pixel, color)
@@ -133,6 +140,9 @@ impl Adaptive {
                 }
                 if !round.give(tile, &wanting, &mut own, &mut changed, (sampler, scratch), spent) {
                     break;
+                }
+                if matches!(threshold, Threshold::PerRayOfSome(..)) {
+                    break; // how much was worth it is known for one stage
                 }
             }
             if changed.contains(&true) {
@@ -249,7 +259,9 @@ impl Adaptive {
                 },
                 _ => continue,
             };
-            demand.add(pixel.error / rays, rays as u64);
+            let points = pixel.refined.as_ref().map_or(0, |refined| refined.points());
+            let worth = if points < pixel.least { f32::MAX } else { pixel.error / rays };
+            demand.add(worth, rays.ceil() as u64);
         }
         demand
     }

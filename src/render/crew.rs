@@ -18,6 +18,17 @@ pub trait Sampler {
     /// Puts the samples at `places` behind what `samples` holds, in their order. Neighbours in the list are near each
     /// other in the picture.
     fn sample(&mut self, places: &[DVec2], samples: &mut Vec<Sample>);
+
+    /// The least number of samples that the adaptive mode gives a pixel, because something is known to be there that
+    /// fewer may miss.
+    fn least_samples(&self, _x: u32, _y: u32) -> u32 {
+        0
+    }
+
+    /// Whether any pixel has such a least number.
+    fn has_thin(&self) -> bool {
+        false
+    }
 }
 
 /// How far all the waves together are.

@@ -20,6 +20,8 @@ const ERROR_POWER: f64 = 0.27;
 const JUMP: f64 = 0.6;
 /// The part of the time left that a step of a time-limited picture should take.
 const SHARE_OF_TIME: f64 = 0.3;
+/// The levels of the ladder that a step takes at most: what is worth an eighth of the most can wait.
+const LEVELS_AT_ONCE: usize = 6;
 /// Less time than this is not worth a step.
 const SHORTEST: Duration = Duration::from_millis(4);
 
@@ -73,6 +75,7 @@ pub(super) fn reach_time<S: Sampler>(
         return Outcome { late: Some(started.elapsed()), ..Outcome::default() };
     }
     let mut seconds_per_ray = started.elapsed().as_secs_f64() / adaptive.spent().max(1) as f64;
+    let mut round = 0;
     loop {
         let left = end.saturating_duration_since(Instant::now());
         if left < SHORTEST {
@@ -86,7 +89,8 @@ pub(super) fn reach_time<S: Sampler>(
         };
         let share = (affordable * 0.9 / demand.at_level(level).max(1) as f64).min(1.0);
         let (before, stepping) = (adaptive.spent(), Instant::now());
-        let threshold = Threshold::PerRayOfSome(Demand::threshold(level), share as f32);
+        let threshold = Threshold::PerRayOfSome(Demand::threshold(level), share as f32, round);
+        round += 1;
         adaptive.refine(crew, threshold, false, stop);
         let rays = adaptive.spent() - before;
         if rays > 0 {
@@ -123,16 +127,13 @@ impl Demand {
         self.rays[..=level].iter().sum()
     }
 
-    /// The first level that takes at least so many rays, or all there are; none if there are none.
+    /// The lowest level whose stages take at most so many rays, not far below the first that has any, which is taken if even
+    /// that takes more; none if there are no stages.
     fn level_for(&self, rays: f64) -> Option<usize> {
-        let all = self.at_level(self.rays.len() - 1);
-        if all == 0 {
-            return None;
-        }
-        (0..self.rays.len()).find(|&level| {
-            let sum = self.at_level(level);
-            sum > 0 && (sum as f64 >= rays || sum == all)
-        })
+        let first = (0..self.rays.len()).find(|&level| self.rays[level] > 0)?;
+        let last = (first + LEVELS_AT_ONCE).min(self.rays.len() - 1);
+        let fits = |level: &usize| self.at_level(*level) as f64 <= rays;
+        Some((first..=last).rev().find(fits).unwrap_or(first))
     }
 
     fn threshold(level: usize) -> f32 {
@@ -156,8 +157,8 @@ mod tests {
         demand.add(1e-30, 100);
         assert_eq!((demand.at_level(0), demand.at_level(2), demand.at_level(3)), (10, 15, 22));
         assert_eq!(demand.level_for(1.0), Some(0));
-        assert_eq!(demand.level_for(11.0), Some(2));
-        assert_eq!(demand.level_for(1e9), Some(3));
+        assert_eq!(demand.level_for(11.0), Some(1));
+        assert_eq!(demand.level_for(1e9), Some(LEVELS_AT_ONCE));
         for (level, per_ray) in [(0, 2000.0), (2, 512.0), (3, 500.0)] {
             assert!(Demand::threshold(level) <= per_ray, "{level}");
         }

@@ -7,6 +7,7 @@ mod look;
 mod plain;
 mod plane;
 mod round;
+mod thin;
 
 use std::{
     num::NonZeroUsize,
@@ -31,7 +32,7 @@ use crate::{
 };
 use adaptive::Adaptive;
 use crew::{Crew, Meter};
-use plane::Area;
+use plane::{Area, Plane};
 use round::Threshold;
 
 /// What the user may choose; the rest is the scene's.
@@ -173,9 +174,7 @@ pub fn picture<S: Sampler>(
     new_sampler: &(dyn Fn() -> S + Sync),
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Picture {
-    let corner = |x: u32, y: u32| (i64::from(x), i64::from(y));
-    let ((x0, y0), (x1, y1)) = (corner(part.x0, part.y0), corner(part.x1, part.y1));
-    let area = Area { x0, y0, x1, y1 };
+    let area = Area::of(part);
     let pixels = area.len() as u64;
     let started = Instant::now();
     match aa {
@@ -239,11 +238,14 @@ pub fn render(
         return Err(RenderError::Crop { part, width, height });
     }
     let rays = Mutex::new(RayCounts::default());
+    let is_adaptive = matches!(options.aa, AntiAliasing::Adaptive { .. });
+    let thin = is_adaptive.then(|| thin::least_samples(scene, &view, &Area::of(&part))).flatten();
     let new_sampler = || Worker {
         tracer: Tracer::new(scene, depth),
         view,
         rays: Vec::new(),
         traced: Vec::new(),
+        thin: thin.as_ref(),
         counts: &rays,
     };
     let picture =
@@ -268,10 +270,20 @@ struct Worker<'a> {
     view: View,
     rays: Vec<Ray>,
     traced: Vec<trace::Sample>,
+    /// The least samples of pixels with something thin, if there are any.
+    thin: Option<&'a Plane<u32>>,
     counts: &'a Mutex<RayCounts>,
 }
 
 impl Sampler for Worker<'_> {
+    fn least_samples(&self, x: u32, y: u32) -> u32 {
+        self.thin.map_or(0, |thin| *thin.at(i64::from(x), i64::from(y)))
+    }
+
+    fn has_thin(&self) -> bool {
+        self.thin.is_some()
+    }
+
     fn sample(&mut self, places: &[DVec2], samples: &mut Vec<Sample>) {
         for some in places.chunks(BATCH) {
             self.rays.clear();

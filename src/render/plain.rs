@@ -12,7 +12,10 @@ use super::{
 };
 use crate::{
     aa::{
-        estimate::{Spread, bare_sequence_share, grid_share, grid_unseen, sequence_unseen},
+        Sample,
+        estimate::{
+            Spread, bare_sequence_share, grid_busy, grid_share, grid_unseen, sequence_unseen,
+        },
         grid_places,
         levels::levels,
         sobol::Sequence,
@@ -62,7 +65,12 @@ pub(super) fn grid<S: Sampler>(crew: &Crew<S>, area: &Area, side: u32) -> Pictur
     let places = |x: i64, y: i64, places: &mut Vec<DVec2>| {
         places.extend(grid_places(DVec2::new(x as f64, y as f64), side));
     };
-    even(crew, area, side * side, places, (grid_share(side), grid_unseen(side)))
+    let judge = |samples: &[Sample], spread: &Spread| {
+        // Without any edge it is at most half of what it is at one.
+        let share = grid_share(side) * if spread.kinds() == 1 { 0.5 } else { 1.0 };
+        spread.error(share, grid_busy(samples.iter().map(|sample| sample.signature), side))
+    };
+    even(crew, area, side * side, places, judge, grid_unseen(side))
 }
 
 /// `count` rays of a sequence through each pixel of a picture `width` pixels wide.
@@ -72,17 +80,19 @@ pub(super) fn sequence<S: Sampler>(crew: &Crew<S>, area: &Area, width: u32, coun
         let corner = DVec2::new(x as f64, y as f64);
         places.extend((0..count).map(|point| corner + sequence.place(point)));
     };
-    even(crew, area, count, places, (bare_sequence_share(count), sequence_unseen(count)))
+    let judge = |_: &[Sample], spread: &Spread| spread.error(bare_sequence_share(count), 0.0);
+    even(crew, area, count, places, judge, sequence_unseen(count))
 }
 
-/// `count` rays through each pixel at the places that `pixel_places` adds to a list; they leave the shares `share` of their
-/// variance and, where they are alike, `unseen` of the contrast to the neighbours.
+/// `count` rays through each pixel at the places that `pixel_places` adds to a list. `judge` tells the squared error of their
+/// mean; where they are alike, `unseen` of the contrast to the neighbours is added.
 fn even<S: Sampler>(
     crew: &Crew<S>,
     area: &Area,
     count: u32,
     pixel_places: impl Fn(i64, i64, &mut Vec<DVec2>) + Sync,
-    (share, unseen): (f32, f32),
+    judge: impl Fn(&[Sample], &Spread) -> f32 + Sync,
+    unseen: f32,
 ) -> Picture {
     let cells = Mutex::new(Plane::new(*area, Cell::default()));
     let (rays, count) = (count, count as usize);
@@ -111,7 +121,7 @@ fn even<S: Sampler>(
                     let only = spread.only_signature();
                     own[tile.place_of(*x, *y)] = Cell {
                         color: sum / count as f32,
-                        error: spread.error(share),
+                        error: judge(samples, &spread),
                         signature: only.unwrap_or((x * 31 + y * 17) as u32),
                         alike: only.is_some(),
                     };

@@ -1,6 +1,6 @@
 //! Rectangles of pixels, which may reach over the picture's edge, and what is known of each pixel in one.
 
-use crate::film::tiles;
+use crate::film::{Tile, tiles};
 
 /// The side of a tile in pixels: small enough to share the work out evenly, large enough to cost nothing by itself.
 const TILE_SIDE: u32 = 16;
@@ -15,6 +15,11 @@ pub(super) struct Area {
 }
 
 impl Area {
+    pub(super) fn of(tile: &Tile) -> Self {
+        let [x0, y0, x1, y1] = [tile.x0, tile.y0, tile.x1, tile.y1].map(i64::from);
+        Self { x0, y0, x1, y1 }
+    }
+
     pub(super) fn width(&self) -> usize {
         (self.x1 - self.x0) as usize
     }

@@ -31,8 +31,8 @@ pub(super) enum Threshold {
     Error(f32),
     /// Its squared error for each ray of the next stage is at least this.
     PerRay(f32),
-    /// The same, for a share of the pixels, picked by hash.
-    PerRayOfSome(f32, f32),
+    /// The same, for a share of the pixels, picked by hash with the number given; and for one stage only.
+    PerRayOfSome(f32, f32, u32),
 }
 
 /// What is known of a pixel.
@@ -46,6 +46,10 @@ pub(super) struct Pixel {
     pub(super) error: f32,
     /// The contrast to the neighbours, zero unless suspect.
     pub(super) contrast: f32,
+    /// How often things change around, from 0 to 1; zero unless suspect.
+    pub(super) busy: f32,
+    /// Samples of the sequence that it gets whatever its error.
+    pub(super) least: u32,
     pub(super) refined: Option<Box<Refined>>,
 }
 
@@ -60,15 +64,15 @@ pub(super) fn is_disputed(centers: &Plane<Sample>, x: i64, y: i64) -> bool {
 pub(super) fn is_above(threshold: Threshold, error: f32, rays: f32) -> bool {
     match threshold {
         Threshold::Error(limit) => error > 0.0 && error >= limit,
-        Threshold::PerRay(limit) | Threshold::PerRayOfSome(limit, _) => error >= limit * rays,
+        Threshold::PerRay(limit) | Threshold::PerRayOfSome(limit, ..) => error >= limit * rays,
     }
 }
 
 /// Whether the threshold is for this pixel at all.
 pub(super) fn is_picked(threshold: Threshold, x: i64, y: i64) -> bool {
     match threshold {
-        Threshold::PerRayOfSome(_, share) if share < 1.0 => {
-            let hash = mix((x as u64) << 32 ^ y as u64 ^ 0xC0FF_EE00_C0FF_EE00) >> 40;
+        Threshold::PerRayOfSome(_, share, round) if share < 1.0 => {
+            let hash = mix((x as u64) << 32 ^ y as u64 ^ mix(u64::from(round))) >> 40;
             (hash as f32) < share * (1_u32 << 24) as f32
         }
         _ => true,
@@ -85,7 +89,7 @@ pub(super) fn corner_rays(pixel: &Pixel) -> f32 {
 }
 
 pub(super) fn wants_corners(pixel: &Pixel, center: &Sample, threshold: Threshold) -> bool {
-    is_above(threshold, pixel.error, corner_rays(pixel) * center.rays as f32)
+    pixel.least > 0 || is_above(threshold, pixel.error, corner_rays(pixel) * center.rays as f32)
 }
 
 /// What the pixels of a tile need to know to get their next samples.
@@ -129,7 +133,7 @@ impl Round<'_> {
                 continue;
             };
             let refined = Refined::new(center, &[a, b, c, d]);
-            pixel.error = refined.error(pixel.contrast);
+            pixel.error = refined.error(pixel.contrast, pixel.busy);
             pixel.stage = 1;
             pixel.refined = Some(Box::new(refined));
             changed[index] = true;
@@ -147,7 +151,9 @@ impl Round<'_> {
         };
         let (x, y) = tile.pixel_at(index);
         let rays = (points - refined.points()) * self.centers.at(x, y).rays;
-        is_picked(self.threshold, x, y) && is_above(self.threshold, pixel.error, rays as f32)
+        is_picked(self.threshold, x, y)
+            && (refined.points() < pixel.least
+                || is_above(self.threshold, pixel.error, rays as f32))
     }
 
     /// Gives the pixels that want them the samples of their next stage; returns whether there was time for all.
@@ -199,10 +205,11 @@ impl Round<'_> {
     fn advance<'s>(&self, pixel: &mut Pixel, answers: &mut impl Iterator<Item = &'s Sample>) {
         let points = self.next_points(pixel);
         if let (Some(points), Some(refined)) = (points, &mut pixel.refined) {
+            refined.begin(points);
             for sample in answers.take((points - refined.points()) as usize) {
                 refined.add(sample);
             }
-            pixel.error = refined.error(pixel.contrast);
+            pixel.error = refined.error(pixel.contrast, pixel.busy);
             pixel.stage += 1;
         }
     }

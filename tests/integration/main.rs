@@ -2,10 +2,13 @@
 
 #![allow(clippy::print_stdout, reason = "a test's table is read with --nocapture")]
 
+mod antialiasing;
 mod determinism;
 mod extremes;
 mod leaks;
 mod numerics;
 mod objects;
 mod references;
+#[cfg(feature = "cli")]
+mod study;
 mod support;

@@ -1,0 +1,56 @@
+//! A study of a few pixels: every trade has its rows, tables and plots, and converged pictures are kept.
+
+use whitted::{
+    scene::{generators, load_builtin},
+    study::{Plan, Trade, charts, report, run},
+};
+
+#[test]
+fn a_small_study_is_complete() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let plan = Plan {
+        scenes: vec!["assignment".to_owned()],
+        objects: vec![1, 20],
+        sizes: vec![[8, 8]],
+        size: [16, 16],
+        small_size: [12, 12],
+        reference_rays: 16,
+        repeats: 2,
+        ..Plan::quick()
+    };
+    let load = |name: &str| match name.split_once(':') {
+        Some((_, objects)) => generators::spheres(objects.parse().expect("a number")),
+        None => load_builtin(name),
+    };
+    let steps = std::cell::Cell::new(0);
+    let study = run(&plan, &load, folder.path(), &|step| {
+        assert!(step.done <= step.total * 1.01, "{step:?}");
+        steps.set(steps.get() + 1);
+    })
+    .expect("a study");
+    assert!(steps.get() > 30);
+    let count = |trade| study.rows.iter().filter(|row| row.trade == trade).count();
+    let trades = [Trade::Accuracy, Trade::Objects, Trade::Size, Trade::Depth];
+    let (modes, few) = (plan.modes.len(), plan.few_modes.len());
+    assert_eq!(trades.map(count), [modes, 2 * few, few, 6]);
+    assert!(study.rows.iter().all(|row| row.seconds > 0.0 && row.measured_rmse.is_finite()));
+    let names: Vec<String> =
+        charts::charts(&study.rows).into_iter().map(|chart| chart.name).collect();
+    assert_eq!(names, ["error-assignment", "estimate", "objects", "depth"]);
+    for chart in charts::charts(&study.rows) {
+        let (svg, pixels) = (chart.svg(), chart.pixels());
+        assert!(
+            svg.starts_with("<svg") && svg.ends_with("</svg>\n") && !svg.contains("NaN"),
+            "{svg}"
+        );
+        assert_eq!(pixels.bytes.len() as u32, 3 * pixels.width * pixels.height);
+    }
+    let page = report::html(&study.rows, &charts::charts(&study.rows), &plan.scenes);
+    assert!(page.contains("objects.svg") && page.contains("assignment-rays.png"));
+
+    // Again: the converged pictures are read, not rendered, and are the same.
+    let again = run(&plan, &load, folder.path(), &|_| ()).expect("a study");
+    for (a, b) in study.rows.iter().zip(&again.rows) {
+        assert_eq!((a.measured_rmse, a.rays, &a.mode), (b.measured_rmse, b.rays, &b.mode));
+    }
+}
