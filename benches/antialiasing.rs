@@ -6,7 +6,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use whitted::{
     aa::AntiAliasing,
     render::{RenderOptions, render},
-    scene::generators,
+    scene::load_builtin_of,
 };
 
 const SIDE: u32 = 128;
@@ -16,7 +16,7 @@ fn modes(criterion: &mut Criterion) {
     group.sample_size(10).warm_up_time(Duration::from_millis(500));
     group.throughput(Throughput::Elements(u64::from(SIDE * SIDE)));
     for objects in [10, 1_000, 10_000, 100_000, 1_000_000] {
-        let scene = generators::spheres(objects).expect("a scene");
+        let scene = load_builtin_of("spheres", Some(objects)).expect("a scene");
         for mode in ["none", "grid:2", "grid:4", "adaptive:16", "adaptive:4"] {
             let aa: AntiAliasing = mode.parse().expect("a mode");
             let options = RenderOptions { size: Some([SIDE; 2]), aa, ..Default::default() };
