@@ -1,7 +1,7 @@
 //! A study of a few pixels: every trade has its rows, tables and plots, and converged pictures are kept.
 
 use whitted::{
-    scene::{generators, load_builtin},
+    scene::{load_builtin, load_builtin_of},
     study::{Plan, Trade, charts, report, run},
 };
 
@@ -19,7 +19,7 @@ fn a_small_study_is_complete() {
         ..Plan::quick()
     };
     let load = |name: &str| match name.split_once(':') {
-        Some((_, objects)) => generators::spheres(objects.parse().expect("a number")),
+        Some((_, objects)) => load_builtin_of("spheres", Some(objects.parse().expect("a number"))),
         None => load_builtin(name),
     };
     let steps = std::cell::Cell::new(0);

@@ -7,7 +7,7 @@ use whitted::{
     aa::{AntiAliasing, levels::levels},
     film::Film,
     render::{RenderOptions, Rendering},
-    scene::{Scene, generators, load_builtin},
+    scene::{Scene, load_builtin, load_builtin_of},
 };
 
 use super::{super::support, mode};
@@ -98,7 +98,7 @@ fn triangles() -> Scene {
 fn what_is_said_of_the_error_is_true() {
     let scenes = [
         ("assignment", load_builtin("assignment").expect("a scene")),
-        ("spheres", generators::spheres(300).expect("a scene")),
+        ("spheres", load_builtin_of("spheres", Some(300)).expect("a scene")),
         ("texture", texture()),
         ("triangles", triangles()),
     ];
