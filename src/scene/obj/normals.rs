@@ -67,7 +67,11 @@ pub(super) fn complete(obj: &mut Obj, areas: &[DVec3], first: &[u32], wanted: &[
     }
     let mut links = Links { parent: (0..obj.corners.len() as u32).collect() };
     let mut groups: NumberMap<u32> = NumberMap::default();
-    let mut edges: NumberMap<[u32; 3]> = NumberMap::default();
+    // Faces by edge, as face and corner, in half-full open addressing: files have millions of edges.
+    let is_any_unsaid = !obj.tallies.smoothing_said;
+    let slots = if is_any_unsaid { obj.corners.len() } else { 1 };
+    let mut edges = vec![[NONE; 2]; slots.next_power_of_two().max(4) * 2];
+    let mask = edges.len() - 1;
     let crease = CREASE_DEGREES.to_radians().cos();
     let mut missing = vec![false; obj.corners.len()];
     for_each_face(obj, |obj, face, smoothing| {
@@ -95,9 +99,28 @@ pub(super) fn complete(obj: &mut Obj, areas: &[DVec3], first: &[u32], wanted: &[
                     let point = |c: usize| first[obj.corners[c] as usize];
                     let (p, q) = (point(c), point(d));
                     let (from, to) = if p < q { (c, d) } else { (d, c) };
-                    let key = u64::from(p.min(q)) << 32 | u64::from(p.max(q));
+                    let key = [p.min(q), p.max(q)];
                     let here = [face as u32, from as u32, to as u32];
-                    let there = *edges.entry(key).or_insert(here);
+                    let mut slot = mix(u64::from(key[0]) << 32 | u64::from(key[1])) as usize & mask;
+                    let there = loop {
+                        let [other, start] = edges[slot];
+                        if other == NONE {
+                            edges[slot] = [face as u32, k as u32];
+                            break here;
+                        }
+                        let range = obj.face(other as usize);
+                        let count = range.len();
+                        let (c, d) = (
+                            range.start + start as usize,
+                            range.start + (start as usize + 1) % count,
+                        );
+                        let (p, q) = (point(c), point(d));
+                        if [p.min(q), p.max(q)] == key {
+                            let (from, to) = if p < q { (c, d) } else { (d, c) };
+                            break [other, from as u32, to as u32];
+                        }
+                        slot = (slot + 1) & mask;
+                    };
                     let [a, b] = [here, there].map(|edge| areas[edge[0] as usize]);
                     if unit(a).dot(unit(b)) > crease {
                         links.join(here[1], there[1]);
