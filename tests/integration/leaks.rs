@@ -21,10 +21,10 @@ fn read(path: &str) -> Mesh {
         let words: Vec<&str> = line.split_whitespace().collect();
         match words.as_slice() {
             ["v", x, y, z, ..] => {
-                vertices.push(DVec3::from_array([x, y, z].map(|x| x.parse().expect("a number"))))
+                vertices.push(DVec3::from_array([x, y, z].map(|x| x.parse().expect("a number"))));
             }
             ["f", a, b, c] => {
-                faces.push([a, b, c].map(|k| k.parse::<usize>().expect("an index") - 1))
+                faces.push([a, b, c].map(|k| k.parse::<usize>().expect("an index") - 1));
             }
             _ => {}
         }
