@@ -16,6 +16,8 @@ use crate::math::cross;
 pub struct Quad {
     vertices: [DVec3; 4],
     normal: DVec3,
+    /// The gradients of the surface coordinates.
+    gradients: [DVec3; 2],
 }
 
 impl Quad {
@@ -28,7 +30,7 @@ impl Quad {
     /// A corner or edges that are not finite, or edges on one line.
     pub fn try_new(corner: DVec3, edge1: DVec3, edge2: DVec3) -> Result<Self, ShapeError> {
         let vertices = [corner, corner + edge1, corner + edge1 + edge2, corner + edge2];
-        Ok(Self { vertices, normal: flat::unit_normal(&vertices)? })
+        Ok(Self::new(vertices, flat::unit_normal(&vertices)?))
     }
 
     /// The corners, counterclockwise seen from the front.
@@ -41,7 +43,7 @@ impl Quad {
     }
 
     pub(crate) fn mapped(&self, map: &Similarity) -> Self {
-        Self { vertices: self.vertices.map(|v| map.point(v)), normal: self.normal }
+        Self::new(self.vertices.map(|v| map.point(v)), self.normal)
     }
 
     /// The crossing of the line of `ray`.
@@ -53,16 +55,20 @@ impl Quad {
     #[inline(always)]
     pub(crate) fn surface(&self, ray: &Ray, t: f64, rest: DVec3) -> Surface {
         let mut surface = flat::surface(self.vertices[0], self.normal, ray, t, rest);
-        surface.uv = self.uv(surface.point);
+        let [u, v] = self.gradients;
+        surface.uv = DVec2::new(u.dot(surface.local), v.dot(surface.local));
         surface
     }
 
-    /// The surface coordinates of a point of the plane, by Cramer's rule.
-    #[inline(always)]
-    fn uv(&self, point: DVec3) -> DVec2 {
-        let [corner, next, _, last] = self.vertices;
-        let (edge1, edge2, s) = (next - corner, last - corner, point - corner);
-        let area = self.normal.dot(cross(edge1, edge2));
-        DVec2::new(self.normal.dot(cross(s, edge2)), self.normal.dot(cross(edge1, s))) / area
+    /// By Cramer's rule, u = n·(s × e₂)/n·(e₁ × e₂) and v = n·(e₁ × s)/n·(e₁ × e₂) at s from the corner.
+    fn new(vertices: [DVec3; 4], normal: DVec3) -> Self {
+        let [corner, next, _, last] = vertices;
+        let (edge1, edge2) = (next - corner, last - corner);
+        let area = normal.dot(cross(edge1, edge2));
+        Self {
+            vertices,
+            normal,
+            gradients: [cross(edge2, normal) / area, cross(normal, edge1) / area],
+        }
     }
 }

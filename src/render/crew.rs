@@ -102,12 +102,20 @@ impl<S: Sampler> Crew<'_, S> {
 pub(super) fn in_turn(tile: &Area) -> impl Iterator<Item = (i64, i64)> + use<> {
     let tile = *tile;
     let side = tile.width().max(tile.height()).next_power_of_two() as u32;
-    let even_bits = |code: u32| (0..16).fold(0, |x, bit| x | ((code >> (2 * bit)) & 1) << bit);
     (0..side * side)
         .map(move |code| {
             (tile.x0 + i64::from(even_bits(code)), tile.y0 + i64::from(even_bits(code >> 1)))
         })
         .filter(move |&(x, y)| tile.contains(x, y))
+}
+
+/// The bits of a number at even places, moved together.
+fn even_bits(code: u32) -> u32 {
+    let mut x = code & 0x5555_5555;
+    x = (x | x >> 1) & 0x3333_3333;
+    x = (x | x >> 2) & 0x0f0f_0f0f;
+    x = (x | x >> 4) & 0x00ff_00ff;
+    (x | x >> 8) & 0xffff
 }
 
 /// The centre of a pixel on the film.

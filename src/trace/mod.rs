@@ -55,6 +55,19 @@ struct Task {
     path: Path,
 }
 
+impl Task {
+    /// What a ray that comes from this one is for, if its answer counts `weight` in this one's.
+    #[inline(always)]
+    fn child(&self, weight: Rgb, branch: Branch) -> Self {
+        Self {
+            weight: self.weight * weight,
+            level: self.level + 1,
+            sample: self.sample,
+            path: self.path.branch(branch),
+        }
+    }
+}
+
 /// A hit that shows its own colour, while the lights are added.
 #[derive(Clone, Copy, Debug)]
 struct Lit<'a> {
@@ -77,6 +90,15 @@ struct Gathered {
     color: Sum,
     signature: u32,
     rays: u32,
+}
+
+impl Gathered {
+    #[inline(always)]
+    fn add(&mut self, light: Rgb, signature: u32) {
+        self.rays += 1;
+        self.color.add(light);
+        self.signature = self.signature.wrapping_add(signature);
+    }
 }
 
 /// Traces rays through a scene; each worker has its own.
@@ -183,81 +205,50 @@ impl<'a> Tracer<'a> {
     #[inline(always)]
     fn gather(&mut self, ray: usize, light: Rgb, signature: u32) {
         let task = &self.batch[ray];
-        let gathered = &mut self.gathered[task.sample as usize];
-        gathered.rays += 1;
-        gathered.color.add(task.weight * light);
-        gathered.signature = gathered.signature.wrapping_add(signature);
+        self.gathered[task.sample as usize].add(task.weight * light, signature);
     }
 
     /// Puts what comes to the hit of ray `index` by reflection and transmission on the list, and the hit itself among those
     /// to be lit.
     #[inline(always)]
     fn meet(&mut self, index: usize, hit: &Hit) {
-        let scene = self.scene;
-        let (task, ray) = (self.batch[index], &self.batch_rays[index]);
-        let (surface, dir) = (scene.surface(ray, hit), ray.dir);
-        let material = scene.material(hit.primitive);
+        let (scene, task) = (self.scene, self.batch[index]);
+        let (ray, material) = (&self.batch_rays[index], scene.material(hit.primitive));
+        // The surface is put where it stays; it is large.
+        self.lit.push(Lit {
+            ray: index,
+            hit: *hit,
+            surface: scene.surface(ray, hit),
+            material,
+            inside: false,
+            diffuse: Rgb::splat(material.ambient),
+            specular: Rgb::ZERO,
+            path: task.path,
+        });
+        let Some(lit) = self.lit.last_mut() else { return };
+        let (surface, dir) = (&lit.surface, ray.dir);
         let inside = !(surface.normal.dot(dir) < 0.0);
-        let path = task.path.hit(hit, inside);
+        (lit.inside, lit.path) = (inside, task.path.hit(hit, inside));
         if task.level < self.depth {
             if material.reflection > 0.0 && !(inside && material.is_transmissive()) {
                 self.counts.reflected += 1;
-                let ray = surface.leave(hit, mirrored(dir, &surface, inside), inside);
-                self.push(ray, &task, Rgb::splat(material.reflection), Branch::Reflected);
+                self.rays.push(surface.leave(hit, mirrored(dir, surface, inside), inside));
+                self.tasks.push(task.child(Rgb::splat(material.reflection), Branch::Reflected));
             }
             if material.is_transmissive()
-                && let Some(onward) = self.transmitted(dir, &surface, material.ior, inside)
+                && let Some(onward) =
+                    transmitted(&mut self.counts, dir, surface, material.ior, inside)
             {
-                let ray = surface.leave(hit, onward, !inside);
-                self.push(ray, &task, material.transmission, Branch::Transmitted);
+                self.rays.push(surface.leave(hit, onward, !inside));
+                self.tasks.push(task.child(material.transmission, Branch::Transmitted));
             }
         }
         if inside && material.is_transmissive() {
             // From within, a body only transmits.
-            return self.gather(index, Rgb::ZERO, path.signature());
+            let signature = lit.path.signature();
+            self.lit.pop();
+            self.gather(index, Rgb::ZERO, signature);
         }
-        let (diffuse, specular) = (Rgb::splat(material.ambient), Rgb::ZERO);
-        self.lit.push(Lit {
-            ray: index,
-            hit: *hit,
-            surface,
-            material,
-            inside,
-            diffuse,
-            specular,
-            path,
-        });
-    }
-
-    /// The direction in which a ray goes on behind a surface, and counts it; `None` if it is totally reflected, which
-    /// transmits nothing.
-    #[inline(always)]
-    fn transmitted(
-        &mut self,
-        dir: DVec3,
-        surface: &Surface,
-        ior: f64,
-        inside: bool,
-    ) -> Option<DVec3> {
-        if ior == 1.0 {
-            self.counts.transmitted += 1;
-            return Some(dir);
-        }
-        let (from, to) = if inside { (ior, 1.0) } else { (1.0, ior) };
-        let refracted = refracted(dir, surface, inside, from, to)?;
-        self.counts.refracted += 1;
-        Some(refracted)
-    }
-
-    #[inline(always)]
-    fn push(&mut self, ray: Ray, parent: &Task, weight: Rgb, branch: Branch) {
-        self.rays.push(ray);
-        self.tasks.push(Task {
-            weight: parent.weight * weight,
-            level: parent.level + 1,
-            sample: parent.sample,
-            path: parent.path.branch(branch),
-        });
     }
 
     /// Adds what one light gives to the hits of the batch that face it.
@@ -305,8 +296,8 @@ impl<'a> Tracer<'a> {
     /// Gives the colours of the lit hits to their samples.
     #[inline(always)]
     fn show(&mut self) {
-        while let Some(lit) = self.lit.pop() {
-            let Lit { material, mut path, .. } = lit;
+        for lit in &self.lit {
+            let Lit { material, mut path, .. } = *lit;
             let mut light = lit.specular;
             if lit.diffuse != Rgb::ZERO && material.opacity > 0.0 {
                 let at = TexturePoint { uv: lit.surface.uv, point: lit.surface.point };
@@ -314,9 +305,31 @@ impl<'a> Tracer<'a> {
                 light += lit.diffuse * color * lit.surface.tint * material.opacity;
                 path = path.cell(cell);
             }
-            self.gather(lit.ray, light, path.signature());
+            let task = &self.batch[lit.ray];
+            self.gathered[task.sample as usize].add(task.weight * light, path.signature());
         }
+        self.lit.clear();
     }
+}
+
+/// The direction in which a ray goes on behind a surface, and counts it; `None` if it is totally reflected, which transmits
+/// nothing.
+#[inline(always)]
+fn transmitted(
+    counts: &mut RayCounts,
+    dir: DVec3,
+    surface: &Surface,
+    ior: f64,
+    inside: bool,
+) -> Option<DVec3> {
+    if ior == 1.0 {
+        counts.transmitted += 1;
+        return Some(dir);
+    }
+    let (from, to) = if inside { (ior, 1.0) } else { (1.0, ior) };
+    let refracted = refracted(dir, surface, inside, from, to)?;
+    counts.refracted += 1;
+    Some(refracted)
 }
 
 /// The batch that a tracer has taken, to be traced.

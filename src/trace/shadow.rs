@@ -59,6 +59,7 @@ impl<'a> Shadows<'a> {
     }
 
     /// Adds the question of hit `index`; `ray` has the light at `t = 1`.
+    #[inline(always)]
     pub(super) fn push(&mut self, index: u32, ray: Ray, to_light: DVec3, cosine: f64) {
         self.rays.push(ray);
         self.questions.push(Shadow { index, to_light, cosine, transmittance: Rgb::ONE, passed: 0 });
