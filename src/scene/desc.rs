@@ -15,6 +15,9 @@ pub struct SceneDesc {
     pub resolution: [u32; 2],
     /// The deepest level of recursion; camera rays have level 1.
     pub depth: u32,
+    /// The weight in a sample below which a reflected or transmitted ray is not cast; 0 casts all.
+    #[serde(default)]
+    pub cutoff: f32,
     /// The colour of a ray that hits nothing.
     pub background: [f64; 3],
     /// Anti-aliasing as `--aa` takes it, unless that is given.

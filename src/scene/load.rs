@@ -69,6 +69,8 @@ impl Parts {
                 check("scene", name, value.into(), range, value >= 1),
             );
         }
+        let cutoff = at_least_zero("scene", "cutoff", f64::from(desc.cutoff));
+        note(&mut found, || Place::Scene("cutoff"), cutoff);
         let camera = CameraPlan {
             eye: DVec3::from_array(desc.camera.eye),
             look_at: DVec3::from_array(desc.camera.look_at),
@@ -91,6 +93,7 @@ impl Parts {
         let mut parts = Self {
             resolution: desc.resolution,
             depth: desc.depth,
+            cutoff: desc.cutoff,
             aa,
             camera,
             shapes,

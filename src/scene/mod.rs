@@ -47,6 +47,7 @@ pub struct Scene {
     name: String,
     resolution: [u32; 2],
     depth: u32,
+    cutoff: f32,
     map: Similarity,
     // The rest is in the scene's own coordinates.
     aa: Option<AntiAliasing>,
@@ -109,6 +110,7 @@ impl Scene {
             name: name.to_owned(),
             resolution,
             depth,
+            cutoff: parts.cutoff,
             aa: parts.aa,
             camera: camera.mapped(&map),
             background: parts.background,
@@ -175,6 +177,11 @@ impl Scene {
     pub fn is_occluded(&self, ray: &Ray, end: f64) -> bool {
         let (ray, scale) = self.map.ray(ray);
         self.accel.any_crossing(&ray, scale.revert(end), |_, _| ControlFlow::Break(()))
+    }
+
+    /// The weight in a sample below which a reflected or transmitted ray is not cast; 0 casts all.
+    pub fn cutoff(&self) -> f32 {
+        self.cutoff
     }
 
     // What follows is in the scene's own coordinates.

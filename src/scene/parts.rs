@@ -19,6 +19,8 @@ pub struct Parts {
     pub resolution: [u32; 2],
     /// The deepest level of recursion.
     pub depth: u32,
+    /// The weight in a sample below which a reflected or transmitted ray is not cast; 0 casts all.
+    pub cutoff: f32,
     /// How pixels are sampled, if the scene says it.
     pub aa: Option<AntiAliasing>,
     /// Where it is seen from.

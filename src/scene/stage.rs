@@ -37,6 +37,7 @@ pub(super) fn stage(model: Model, up: DVec3, fov: Option<f64>) -> Result<Parts, 
     let mut parts = Parts {
         resolution: RESOLUTION,
         depth: DEPTH,
+        cutoff: 0.0,
         aa: None,
         camera,
         shapes: Vec::new(),

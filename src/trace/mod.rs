@@ -230,12 +230,16 @@ impl<'a> Tracer<'a> {
         let inside = !(surface.normal.dot(dir) < 0.0);
         (lit.inside, lit.path) = (inside, task.path.hit(hit, inside));
         if task.level < self.depth {
-            if material.reflection > 0.0 && !(inside && material.is_transmissive()) {
+            let counts = |weight: Rgb| (task.weight * weight).max_element() >= scene.cutoff();
+            let mirror = Rgb::splat(material.reflection);
+            let only_transmits = inside && material.is_transmissive();
+            if material.reflection > 0.0 && !only_transmits && counts(mirror) {
                 self.counts.reflected += 1;
                 self.rays.push(surface.leave(hit, mirrored(dir, surface, inside), inside));
-                self.tasks.push(task.child(Rgb::splat(material.reflection), Branch::Reflected));
+                self.tasks.push(task.child(mirror, Branch::Reflected));
             }
             if material.is_transmissive()
+                && counts(material.transmission)
                 && let Some(onward) =
                     transmitted(&mut self.counts, dir, surface, material.ior, inside)
             {

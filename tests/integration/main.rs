@@ -8,6 +8,7 @@ mod extremes;
 mod leaks;
 mod numerics;
 mod objects;
+mod recursion;
 mod references;
 #[cfg(feature = "cli")]
 mod study;

@@ -68,6 +68,11 @@ const ENDS: Kind = Kind::Choice(&["open", "closed"]);
 pub(super) const SCENE: &[Key] = &[
     must("resolution", Kind::Size, "width and height of the picture in pixels"),
     must("depth", Kind::Whole(1), "deepest level of recursion; camera rays have level 1"),
+    may(
+        "cutoff",
+        WEIGHT,
+        "weight in a sample below which a ray is not cast; 0 (default) casts all",
+    ),
     must("background", Kind::Color, "colour of a ray that hits nothing"),
     may("aa", Kind::Text, "anti-aliasing as --aa takes it, unless that is given"),
     may(

@@ -296,6 +296,7 @@ impl Builder {
             parts: Parts {
                 resolution: view.resolution,
                 depth: DEPTH,
+                cutoff: 0.0,
                 aa: None,
                 camera,
                 lights: self.lights.iter().map(light).collect(),
