@@ -70,7 +70,7 @@ fn count_test(shape: &Shape) {
         Shape::Cylinder(_) => 1,
         Shape::Cone(_) => 2,
         Shape::Quad(_) => 3,
-        Shape::Triangle(_) => 4,
+        Shape::Triangle(_) | Shape::Face(_) => 4,
         Shape::Polygon(_) => 5,
     });
 }
@@ -198,6 +198,11 @@ fn roots(a: f32, b: f32, c: f32) -> [f32; 2] {
 }
 
 impl NaiveShape {
+    fn triangle(vertices: [DVec3; 3]) -> Self {
+        let [corner, b, c] = vertices.map(single);
+        Self::Triangle { corner, edge1: b - corner, edge2: c - corner }
+    }
+
     pub(super) fn new(shape: &Shape) -> Self {
         match shape {
             Shape::Sphere(s) => {
@@ -211,10 +216,8 @@ impl NaiveShape {
                 let normal = edge1.cross(edge2);
                 Self::Quad { corner: q, edge1, edge2, normal, w: normal / normal.dot(normal) }
             }
-            Shape::Triangle(s) => {
-                let [corner, b, c] = s.vertices().map(single);
-                Self::Triangle { corner, edge1: b - corner, edge2: c - corner }
-            }
+            Shape::Triangle(s) => Self::triangle(s.vertices()),
+            Shape::Face(s) => Self::triangle(s.vertices()),
             Shape::Polygon(s) => {
                 let vertices: Box<[Vec3]> = s.vertices().iter().copied().map(single).collect();
                 let normal = (vertices[1] - vertices[0]).cross(vertices[2] - vertices[0]);
