@@ -7,7 +7,7 @@
 //! **Smooth shading.** A corner may have a normal. What is hit, and from which side, is decided by the flat triangle
 //! alone; the interpolated normal ([`Surface::shading`]) only bends the light. Near the terminator the flat
 //! triangles would shadow each other in steps, so shadow rays start on the curved surface that the normals describe
-//! ([`Face::shadow_offset`]).
+//! (`Face::shadow_offset`).
 //!
 //! Source: Hanika, "Hacking the Shadow Terminator", *Ray Tracing Gems II* (2021), ch. 4.
 

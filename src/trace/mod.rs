@@ -4,7 +4,7 @@
 //! stack stays flat however deep it goes. Rays are taken from the end of the list in batches of one level: those of a
 //! batch are traced together, then lit together light by light, because rays that start or end in one point
 //! are cheaper together. What a sample becomes does not depend on the batches: its parts are summed in fixed
-//! point ([`sum`]), where order does not matter.
+//! point (module `sum`), where order does not matter.
 
 pub mod classic;
 mod counts;
