@@ -9,7 +9,7 @@ use super::{
     ray::Ray,
     shape::ShapeError,
 };
-use crate::math::cross;
+use crate::math::{cross, scale};
 
 /// A parallelogram.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,12 +63,17 @@ impl Quad {
     /// By Cramer's rule, u = n·(s × e₂)/n·(e₁ × e₂) and v = n·(e₁ × s)/n·(e₁ × e₂) at s from the corner.
     fn new(vertices: [DVec3; 4], normal: DVec3) -> Self {
         let [corner, next, _, last] = vertices;
-        let (edge1, edge2) = (next - corner, last - corner);
+        // Each edge by itself brought to ordinary size, so that no product overflows.
+        let ((edge1, scale1), (edge2, scale2)) =
+            (scale::normalized(next - corner), scale::normalized(last - corner));
         let area = normal.dot(cross(edge1, edge2));
-        Self {
-            vertices,
-            normal,
-            gradients: [cross(edge2, normal) / area, cross(normal, edge1) / area],
-        }
+        // Edges that rounding has made parallel, at the end of the range of numbers, give no coordinates.
+        let gradient = |v: DVec3, e: i32| {
+            let v = scale::scaled(v / area, e);
+            if v.is_finite() { v } else { DVec3::ZERO }
+        };
+        let u = gradient(cross(edge2, normal), scale1);
+        let v = gradient(cross(normal, edge1), scale2);
+        Self { vertices, normal, gradients: [u, v] }
     }
 }
