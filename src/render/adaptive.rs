@@ -61,8 +61,8 @@ impl Adaptive {
                 let window = Window::of_centers(tile, &centers);
                 let (own_pixels, own_colors): (Vec<_>, Vec<_>) = tile
                     .pixels()
-                    .map(|(x, y)| {
-                        let look = window.look(x, y);
+                    .zip(window.looks())
+                    .map(|((x, y), look)| {
                         let color = if look.inner {
                             corrected(&centers, x, y)
                         } else {
@@ -76,8 +76,8 @@ impl Adaptive {
                             } else {
                                 0
                             },
-                            contrast: if look.suspect { look.contrast } else { 0.0 },
-                            busy: if look.suspect { look.busy } else { 0.0 },
+                            contrast: look.contrast,
+                            busy: look.busy,
                             ..Pixel::default()
                         };
                         (pixel, color)

@@ -36,8 +36,7 @@ pub(super) fn centers<S: Sampler>(crew: &Crew<S>, area: &Area) -> Picture {
         || false,
         |_, _, tile| {
             let window = Window::of_centers(tile, &centers);
-            let own: Vec<f32> =
-                tile.pixels().map(|(x, y)| window.look(x, y).center_error(false)).collect();
+            let own: Vec<f32> = window.looks().map(|look| look.center_error(false)).collect();
             errors.lock().unwrap_or_else(PoisonError::into_inner).put(tile, own);
         },
     );
@@ -143,8 +142,9 @@ fn even<S: Sampler>(
             });
             let own: Vec<f32> = tile
                 .pixels()
-                .map(|(x, y)| {
-                    let (cell, look) = (cells.at(x, y), window.look(x, y));
+                .zip(window.looks())
+                .map(|((x, y), look)| {
+                    let cell = cells.at(x, y);
                     let hidden = cell.alike && look.suspect;
                     cell.error + if hidden { unseen * look.contrast } else { 0.0 }
                 })

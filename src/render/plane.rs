@@ -3,7 +3,7 @@
 use crate::film::{Tile, tiles};
 
 /// The side of a tile in pixels: small enough to share the work out evenly, large enough to cost nothing by itself.
-const TILE_SIDE: u32 = 16;
+pub(super) const TILE_SIDE: u32 = 16;
 
 /// A rectangle of pixels, half open, in columns and rows of the whole picture; those of its apron have -1 and width or height.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
