@@ -4,7 +4,13 @@
 //! `#[inline(always)]`, or the compiler builds them for the baseline and every operation becomes a call; then
 //! `f64::mul_add` in the shapes' own tests is an instruction too, with the same result as the library's function.
 
-use crate::geometry::{Ray, Shape, hit::Crossings};
+use std::ops::Range;
+
+use crate::geometry::{
+    Ray, Shape,
+    hit::Crossings,
+    lanes::{Column, RayLanes},
+};
 
 /// Which instructions the queries use; the answers do not depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -74,6 +80,15 @@ pub(super) trait Simd: Copy {
     /// [`Shape::crossings_of`], compiled once for these instructions rather than into every kernel.
     fn crossings(self, shape: &Shape, ray: &Ray, primitive: u32) -> Crossings;
 
+    /// [`Shape::cross_lanes`], likewise.
+    fn cross_lanes(
+        self,
+        shape: &Shape,
+        rays: &RayLanes,
+        lanes: Range<usize>,
+        crossed: &mut [Column; 2],
+    ) -> bool;
+
     fn splat(self, x: f32) -> Self::F;
     fn load(self, x: &[f32; 8]) -> Self::F;
     fn store(self, x: Self::F) -> Lanes;
@@ -124,6 +139,26 @@ impl Simd for Portable {
             shape.crossings_of(ray, primitive)
         }
         compiled(shape, ray, primitive)
+    }
+
+    #[inline(always)]
+    fn cross_lanes(
+        self,
+        shape: &Shape,
+        rays: &RayLanes,
+        lanes: Range<usize>,
+        crossed: &mut [Column; 2],
+    ) -> bool {
+        #[inline(never)]
+        fn compiled(
+            shape: &Shape,
+            rays: &RayLanes,
+            lanes: Range<usize>,
+            crossed: &mut [Column; 2],
+        ) -> bool {
+            shape.cross_lanes(rays, lanes, crossed)
+        }
+        compiled(shape, rays, lanes, crossed)
     }
 
     #[inline(always)]

@@ -1,14 +1,21 @@
 //! The instructions of x86-64.
 #![allow(unsafe_code, reason = "instructions that not every machine has")]
 
-use std::arch::x86_64::{
-    __m256, _CMP_LE_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_cmp_ps, _mm256_div_ps,
-    _mm256_fmadd_ps, _mm256_fmsub_ps, _mm256_fnmadd_ps, _mm256_loadu_ps, _mm256_max_ps,
-    _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_set1_ps, _mm256_sqrt_ps,
-    _mm256_storeu_ps, _mm256_sub_ps, _mm256_xor_ps,
+use std::{
+    arch::x86_64::{
+        __m256, _CMP_LE_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_cmp_ps, _mm256_div_ps,
+        _mm256_fmadd_ps, _mm256_fmsub_ps, _mm256_fnmadd_ps, _mm256_loadu_ps, _mm256_max_ps,
+        _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_set1_ps, _mm256_sqrt_ps,
+        _mm256_storeu_ps, _mm256_sub_ps, _mm256_xor_ps,
+    },
+    ops::Range,
 };
 
-use crate::geometry::{Ray, Shape, hit::Crossings};
+use crate::geometry::{
+    Ray, Shape,
+    hit::Crossings,
+    lanes::{Column, RayLanes},
+};
 
 use super::simd::{Kernel, Lanes, Simd};
 
@@ -58,6 +65,28 @@ impl Simd for Avx2 {
         }
         // SAFETY: `self` proves that the machine has AVX2 and FMA.
         unsafe { compiled(shape, ray, primitive) }
+    }
+
+    #[inline(always)]
+    fn cross_lanes(
+        self,
+        shape: &Shape,
+        rays: &RayLanes,
+        lanes: Range<usize>,
+        crossed: &mut [Column; 2],
+    ) -> bool {
+        #[target_feature(enable = "avx2,fma")]
+        #[inline(never)]
+        fn compiled(
+            shape: &Shape,
+            rays: &RayLanes,
+            lanes: Range<usize>,
+            crossed: &mut [Column; 2],
+        ) -> bool {
+            shape.cross_lanes(rays, lanes, crossed)
+        }
+        // SAFETY: `self` proves that the machine has AVX2 and FMA.
+        unsafe { compiled(shape, rays, lanes, crossed) }
     }
 
     #[inline(always)]
