@@ -20,15 +20,18 @@ pub enum Isa {
     Portable,
     /// AVX2 and FMA of x86-64.
     Avx2,
+    /// AVX-512 of x86-64: F, VL, DQ and BW.
+    Avx512,
 }
 
 impl Isa {
     /// All there are.
-    pub const ALL: [Self; 2] = [Self::Portable, Self::Avx2];
+    pub const ALL: [Self; 3] = [Self::Portable, Self::Avx2, Self::Avx512];
 
     /// The fastest that this machine has.
     pub fn detect() -> Self {
-        if Self::Avx2.is_available() { Self::Avx2 } else { Self::Portable }
+        let best = Self::ALL.into_iter().rev().find(|isa| isa.is_available());
+        best.unwrap_or(Self::Portable)
     }
 
     /// Whether this machine has it.
@@ -37,8 +40,10 @@ impl Isa {
             Self::Portable => true,
             #[cfg(target_arch = "x86_64")]
             Self::Avx2 => super::simd_x86::Avx2::detect().is_some(),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => super::simd_x86::Avx512::detect().is_some(),
             #[cfg(not(target_arch = "x86_64"))]
-            Self::Avx2 => false,
+            Self::Avx2 | Self::Avx512 => false,
         }
     }
 }
@@ -58,6 +63,11 @@ pub(super) fn dispatch<K: Kernel>(isa: Isa, kernel: K) -> K::Output {
         #[cfg(target_arch = "x86_64")]
         Isa::Avx2 => match super::simd_x86::Avx2::detect() {
             Some(avx2) => avx2.vectorize(kernel),
+            None => Portable.vectorize(kernel),
+        },
+        #[cfg(target_arch = "x86_64")]
+        Isa::Avx512 => match super::simd_x86::Avx512::detect() {
+            Some(avx512) => avx512.vectorize(kernel),
             None => Portable.vectorize(kernel),
         },
         _ => Portable.vectorize(kernel),
