@@ -8,6 +8,9 @@ use crate::{
     color::Rgb,
 };
 
+/// The widest tile.
+const SIDE: usize = TILE_SIDE as usize;
+
 /// The centres of a tile and of the pixels around it, encoded; pixels outside of what is known repeat those at its edge.
 pub(super) struct Window {
     /// Display levels, channel by channel.
@@ -17,48 +20,53 @@ pub(super) struct Window {
 }
 
 impl Window {
-    /// The window about `tile` of colours and signatures that are found by place.
-    pub(super) fn new(tile: &Area, mut at: impl FnMut(i64, i64) -> (Rgb, u32)) -> Self {
+    /// The window about `tile` of a plane, from whose entries `see` makes colours and signatures.
+    pub(super) fn new<T>(tile: &Area, plane: &Plane<T>, see: impl Fn(&T) -> (Rgb, u32)) -> Self {
         let around = tile.grown(1);
-        let channel = || Vec::with_capacity(around.len());
-        let (mut channels, mut signatures) =
-            ([channel(), channel(), channel()], Vec::with_capacity(around.len()));
-        for (x, y) in around.pixels() {
-            let (color, signature) = at(x, y);
-            let levels = levels(color).to_array();
-            channels.iter_mut().zip(levels).for_each(|(channel, level)| channel.push(level));
-            signatures.push(signature);
+        let mut window = Self {
+            levels: std::array::from_fn(|_| vec![0.0; around.len()]),
+            signatures: vec![0; around.len()],
+            around,
+        };
+        let mut place = 0;
+        for y in around.y0..around.y1 {
+            let row = plane.nearest_row(y);
+            for x in around.x0..around.x1 {
+                let (color, signature) = see(&row[plane.nearest_column(x)]);
+                let levels = levels(color);
+                window.levels[0][place] = levels.x;
+                window.levels[1][place] = levels.y;
+                window.levels[2][place] = levels.z;
+                window.signatures[place] = signature;
+                place += 1;
+            }
         }
-        Self { levels: channels, signatures, around }
+        window
     }
 
     /// The window about `tile` of traced centres.
     pub(super) fn of_centers(tile: &Area, centers: &Plane<Sample>) -> Self {
-        Self::new(tile, |x, y| {
-            let sample = centers.nearest(x, y);
-            (sample.color, sample.signature)
-        })
+        Self::new(tile, centers, |sample| (sample.color, sample.signature))
     }
 
     /// The looks of the tile's pixels, row by row.
-    pub(super) fn looks(&self) -> impl Iterator<Item = Look> {
+    pub(super) fn looks(&self) -> Vec<Look> {
         let (width, height) = (self.around.width(), self.around.height());
-        (1..height - 1).flat_map(move |row| {
-            let smooth = self.smooth_looks(row);
-            smooth.into_iter().take(width - 2).zip(1..).map(move |(look, column)| {
-                if look.suspect { self.look(row * width + column) } else { look }
-            })
-        })
+        let mut looks = Vec::with_capacity((width - 2) * (height - 2));
+        for row in 1..height - 1 {
+            self.add_row(row * width, &mut looks);
+        }
+        looks
     }
 
-    /// The looks of a row of pixels as if each had but one signature around it, and whether that is so.
-    fn smooth_looks(&self, row: usize) -> [Look; TILE_SIDE as usize] {
+    /// Adds the looks of the row whose first place in the window is `middle`.
+    fn add_row(&self, middle: usize, looks: &mut Vec<Look>) {
         let width = self.around.width();
-        let (pixels, middle) = (width - 2, row * width);
-        let (mut curve, mut slope) = ([0.0; TILE_SIDE as usize], [0.0; TILE_SIDE as usize]);
+        let pixels = (width - 2).min(SIDE);
+        let (mut curve, mut slope) = ([0.0; SIDE], [0.0; SIDE]);
+        let rows = [middle - width, middle, middle + width].map(|start| start..start + width);
         for channel in &self.levels {
-            let rows = [middle - width, middle, middle + width].map(|at| &channel[at..at + width]);
-            let [above, at, below] = rows;
+            let [above, at, below] = rows.clone().map(|row| &channel[row]);
             for k in 0..pixels {
                 let (west, here, east) = (at[k], at[k + 1], at[k + 2]);
                 let (north, south) = (above[k + 1], below[k + 1]);
@@ -68,19 +76,22 @@ impl Window {
                 slope[k] += (west - east) * (west - east) + (north - south) * (north - south);
             }
         }
-        let mut differ = [0; TILE_SIDE as usize];
-        for start in [middle - width, middle, middle + width] {
-            let signatures = &self.signatures[start..start + width];
-            let centers = &self.signatures[middle + 1..];
+        let mut differ = [0; SIDE];
+        let centers = &self.signatures[middle + 1..];
+        for row in rows {
+            let signatures = &self.signatures[row];
             for k in 0..pixels {
                 let of = |place: usize| signatures[place] ^ centers[k];
                 differ[k] |= of(k) | of(k + 1) | of(k + 2);
             }
         }
-        std::array::from_fn(|k| Look {
-            suspect: differ[k] != 0,
-            ..Look::smooth(curve[k] / 3.0, slope[k] / 3.0)
-        })
+        looks.extend((0..pixels).map(|k| {
+            if differ[k] == 0 {
+                Look::smooth(curve[k] / 3.0, slope[k] / 3.0)
+            } else {
+                self.look(middle + 1 + k)
+            }
+        }));
     }
 
     /// The look of the pixel at a place of the window.

@@ -165,7 +165,7 @@ impl Picture {
 /// The part `part` of a picture `width` pixels wide, of whatever `new_sampler`'s samplers see; each worker thread has its own.
 ///
 /// Every pixel depends on its place in the whole picture and on what is seen within a pixel's width around it, never on `part`.
-pub fn picture<S: Sampler>(
+pub fn picture<S: Sampler + Send>(
     part: &Tile,
     width: u32,
     aa: AntiAliasing,

@@ -113,6 +113,18 @@ impl<T> Plane<T> {
         self.at(x.clamp(self.area.x0, self.area.x1 - 1), y.clamp(self.area.y0, self.area.y1 - 1))
     }
 
+    /// The row that is nearest to `y`.
+    pub(super) fn nearest_row(&self, y: i64) -> &[T] {
+        let start = self.area.place_of(self.area.x0, y.clamp(self.area.y0, self.area.y1 - 1));
+        &self.values[start..start + self.area.width()]
+    }
+
+    /// The place in a row that is nearest to `x`.
+    #[inline]
+    pub(super) fn nearest_column(&self, x: i64) -> usize {
+        (x.clamp(self.area.x0, self.area.x1 - 1) - self.area.x0) as usize
+    }
+
     pub(super) fn values(&self) -> &[T] {
         &self.values
     }
