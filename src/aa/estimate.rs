@@ -5,11 +5,14 @@
 
 use glam::Vec3;
 
-use super::levels::{levels, squared_distance};
+use super::{
+    Sample,
+    levels::{levels, squared_distance},
+};
 use crate::color::Rgb;
 
 /// The error of a single centre, as a share of its squared differences to neighbours of another signature.
-const CENTER_EDGE: f32 = 0.030;
+const CENTER_EDGE: f32 = 0.022;
 /// The same as a share of the squared second differences, where all neighbours have the centre's signature.
 const CENTER_CURVE: f32 = 0.016;
 /// And where the second difference was used to correct the colour.
@@ -233,7 +236,29 @@ pub fn bare_sequence_share(points: u32) -> f32 {
 
 /// The share of the variance that a grid of `side` × `side` samples leaves.
 pub fn grid_share(side: u32) -> f32 {
-    by_logarithms(&[(2.0, 0.068), (3.0, 0.021), (4.0, 0.011), (6.0, 0.004)], side as f32)
+    by_logarithms(&[(2.0, 0.068), (3.0, 0.0095)], side as f32)
+}
+
+/// What the four interleaved grids in one of `side` × `side` samples, given row by row, differ by: the squared error that their mean would
+/// have if they were independent.
+///
+/// They are even patterns as well, whatever they show, so what they leave tells what the whole leaves: for random samples all
+/// of this, at a single edge about half.
+pub fn grid_quarters(samples: &[Sample], side: usize) -> f32 {
+    let (mut sums, mut counts) = ([Vec3::ZERO; 4], [0_u32; 4]);
+    for (k, sample) in samples.iter().enumerate() {
+        let quarter = (k / side % 2) * 2 + k % side % 2;
+        sums[quarter] += levels(sample.color);
+        counts[quarter] += 1;
+    }
+    let means: [Vec3; 4] = std::array::from_fn(|k| sums[k] / counts[k].max(1) as f32);
+    let mean = means.iter().sum::<Vec3>() / 4.0;
+    means.iter().map(|m| squared_distance(*m, mean)).sum::<f32>() / 12.0
+}
+
+/// The part of that which such a grid leaves.
+pub fn grid_quarters_share(side: u32) -> f32 {
+    by_logarithms(&[(4.0, 0.33), (6.0, 0.25)], side as f32)
 }
 
 /// How often the signature changes between neighbours of a grid of `side` × `side` samples, given row by row: 0 for what one edge
@@ -253,7 +278,7 @@ pub fn grid_busy(signatures: impl Iterator<Item = u32> + Clone, side: u32) -> f3
 
 /// The share of the neighbours' contrast that may hide between the equal samples of such a grid.
 pub fn grid_unseen(side: u32) -> f32 {
-    by_logarithms(&[(2.0, 2.9e-3), (3.0, 7.3e-4), (4.0, 2.5e-4), (6.0, 7e-5)], side as f32)
+    by_logarithms(&[(2.0, 2.9e-3), (3.0, 4.0e-4), (4.0, 1.5e-4), (6.0, 4e-5)], side as f32)
 }
 
 #[cfg(test)]
@@ -266,7 +291,7 @@ mod tests {
         for (points, share) in [(0, 0.078), (1, 0.078), (4, 0.036), (16, 0.007), (64, 0.0011)] {
             assert!((sequence_share(points) / share - 1.0).abs() < 1e-5, "{points}");
         }
-        assert!((grid_share(4) / 0.011 - 1.0).abs() < 1e-5);
+        assert!((grid_share(2) / 0.068 - 1.0).abs() < 1e-5);
         assert!((sequence_share(128) / (0.0011 * 0.0011 / 0.0027) - 1.0).abs() < 1e-5);
         assert!((2..64).all(|side| grid_share(side + 1) < grid_share(side)));
         assert!((1..4096).all(|points| sequence_unseen(points + 1) < sequence_unseen(points)));
@@ -282,6 +307,20 @@ mod tests {
         assert_eq!([2, 3, 4, 8].map(|side| grid_busy(edge(side), side)), [0.0; 4]);
         let board = (0..16).map(|k| (k + k / 4) % 2);
         assert_eq!(grid_busy(board, 4), 1.0);
+    }
+
+    /// Oracle: by hand. The four interleaved grids of one of 4 × 4 samples are grey 0, 0, 0 and 1: levels 0, 0, 0 and 255, whose mean
+    /// squared deviation from 63.75 is 3/16 of 255²; their mean has a third of that.
+    #[test]
+    fn interleaved_grids_are_compared() {
+        let sample = |k: usize| Sample {
+            color: Rgb::splat(f32::from(u8::from(k / 4 % 2 == 1 && k % 2 == 1))),
+            ..Sample::default()
+        };
+        let samples: Vec<Sample> = (0..16).map(sample).collect();
+        let expected = 255.0_f32.powi(2) * 3.0 / 16.0 / 3.0;
+        assert!((grid_quarters(&samples, 4) / expected - 1.0).abs() < 1e-4);
+        assert_eq!(grid_quarters(&[samples[5]; 36], 6), 0.0);
     }
 
     /// Oracle: the variance of a handful of numbers, worked by hand; grey 0 is level 0, grey 1 is level 255.

@@ -13,6 +13,8 @@ pub struct Sample {
     pub color: Rgb,
     /// What the ray and those that came of it met: equal for equal trees of surfaces, lights and pattern cells.
     pub signature: u32,
+    /// A number of the cell of the pattern that the camera ray itself met; 0 for none.
+    pub cell: u32,
     /// How many rays it took, those towards the lights included.
     pub rays: u32,
 }
@@ -109,20 +111,35 @@ impl Refined {
         (self.sum + self.cross * weight) / (self.points as f32 + weight)
     }
 
-    /// The colour's squared error; `contrast` and `busy` are those of the pixel's [`Look`](super::estimate::Look), zero unless
-    /// suspect.
+    /// The colour's squared error, rather too large than too small; `contrast` and `busy` are those of the pixel's
+    /// [`Look`](super::estimate::Look), zero unless suspect.
     pub fn error(&self, contrast: f32, busy: f32) -> f32 {
         let seen = self.spread.error(sequence_share(self.points), BUSY * busy);
-        let seen = if self.points >= 8 {
-            seen.max(quarters_share(self.points) * self.quarters.variance())
-        } else {
-            seen
-        };
-        if self.spread.kinds() > 1 {
-            return seen;
+        let seen = if self.points >= 8 { seen.max(self.quartered()) } else { seen };
+        self.with_unseen(seen, contrast, busy)
+    }
+
+    /// The colour's squared error as it is on average, for sums over many pixels: from what the quarters of the samples differ by,
+    /// which knows nothing of what they met.
+    pub fn expected_error(&self, contrast: f32, busy: f32) -> f32 {
+        if self.points < 8 {
+            return self.error(contrast, busy);
         }
-        let hidden = busy * all_alike(self.spread.count()) / 8.0;
-        seen + sequence_unseen(self.points).max(hidden) * contrast
+        self.with_unseen(self.quartered(), contrast, busy)
+    }
+
+    fn quartered(&self) -> f32 {
+        quarters_share(self.points) * self.quarters.variance()
+    }
+
+    /// The error with that of what may hide between the samples: little if they all met the same; much if they met different things
+    /// of one colour, as where a pixel skips cells of a pattern.
+    fn with_unseen(&self, seen: f32, contrast: f32, busy: f32) -> f32 {
+        let hidden = all_alike(self.spread.count()) / 8.0;
+        if self.spread.kinds() > 1 {
+            return seen.max(hidden * contrast);
+        }
+        seen + sequence_unseen(self.points).max(busy * hidden) * contrast
     }
 }
 

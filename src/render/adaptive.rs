@@ -13,7 +13,7 @@ use super::{
     Outcome, Picture,
     crew::{Crew, Sampler, in_turn, trace_centers},
     goal::Demand,
-    look::{Window, corrected},
+    look::{Window, corrected, skips_cells},
     plane::{Area, Plane},
     round::{
         Pixel, Round, Threshold, add_rays, corner_rays, is_above, is_disputed, is_picked,
@@ -25,9 +25,9 @@ use crate::{
     color::Rgb,
 };
 
-/// The picture's squared error, as a multiple of what its pixels add up to: pixels stop where their estimate happens to be
-/// low.
-pub(super) const STOPPED_LOW: f64 = 1.25;
+/// The samples that a pixel gets at least where a pattern's cells are no wider than it: its centre and corners, and those of its
+/// neighbours, may all have met the same colour.
+const LEAST_IN_CELLS: u32 = 8;
 
 /// A picture that gets better with every call of [`Adaptive::refine`].
 pub(super) struct Adaptive {
@@ -73,14 +73,15 @@ impl Adaptive {
                         } else {
                             centers.at(x, y).color
                         };
+                        let thin =
+                            if has_thin { sampler.least_samples(x as u32, y as u32) } else { 0 };
+                        let skips = look.suspect && skips_cells(&centers, x, y);
+                        let cells = if skips { LEAST_IN_CELLS } else { 0 };
                         let pixel = Pixel {
                             suspect: look.suspect,
                             error: look.center_error(look.inner),
-                            least: if has_thin {
-                                sampler.least_samples(x as u32, y as u32)
-                            } else {
-                                0
-                            },
+                            expected: look.center_error(look.inner),
+                            least: thin.max(cells),
                             contrast: look.contrast,
                             busy: look.busy,
                             ..Pixel::default()
@@ -222,8 +223,8 @@ impl Adaptive {
 
     /// The estimated error: root mean square of all channels, in levels of 255.
     pub(super) fn estimated_rmse(&self) -> f64 {
-        let sum: f64 = self.pixels.values().iter().map(|pixel| f64::from(pixel.error)).sum();
-        (STOPPED_LOW * sum / self.area.len().max(1) as f64).sqrt()
+        let sum: f64 = self.pixels.values().iter().map(|pixel| f64::from(pixel.expected)).sum();
+        (sum / self.area.len().max(1) as f64).sqrt()
     }
 
     /// Rays of all kinds so far.
@@ -275,9 +276,8 @@ impl Adaptive {
         Picture {
             colors: self.colors.into_values(),
             samples: self.samples.into_values(),
-            errors: self.pixels.values().iter().map(|pixel| pixel.error).collect(),
+            errors: self.pixels.values().iter().map(|pixel| pixel.expected).collect(),
             outcome: Outcome::default(),
-            factor: STOPPED_LOW,
         }
     }
 }

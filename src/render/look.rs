@@ -114,6 +114,16 @@ impl Window {
     }
 }
 
+/// Whether a pixel is about as wide as the cells of the pattern in it: all neighbours but two at most met others than its centre. Where
+/// cells are wider, no more than five do.
+pub(super) fn skips_cells(centers: &Plane<Sample>, x: i64, y: i64) -> bool {
+    const MOST_ALIKE: usize = 2;
+    let cell = centers.at(x, y).cell;
+    let alike =
+        |dy: i64| (-1..=1).filter(move |dx| centers.nearest(x + dx, y + dy).cell == cell).count();
+    cell != 0 && (-1..=1).map(alike).sum::<usize>() <= MOST_ALIKE + 1
+}
+
 /// The centre's colour with the second-order term of the integral over the pixel: c + (E + W + N + S - 4c)/24.
 pub(super) fn corrected(centers: &Plane<Sample>, x: i64, y: i64) -> Rgb {
     let color = |x, y| centers.nearest(x, y).color;

@@ -150,15 +150,13 @@ pub struct Picture {
     pub errors: Vec<f32>,
     /// How it ended.
     pub outcome: Outcome,
-    /// What the mean of `errors` is to be multiplied by.
-    factor: f64,
 }
 
 impl Picture {
     /// The estimated error: root mean square of all channels, in levels of 255.
     pub fn estimated_rmse(&self) -> f64 {
         let sum: f64 = self.errors.iter().copied().map(f64::from).sum();
-        (self.factor * sum / self.errors.len().max(1) as f64).sqrt()
+        (sum / self.errors.len().max(1) as f64).sqrt()
     }
 }
 
@@ -289,6 +287,7 @@ impl Sampler for Worker<'_> {
                 // A NaN, which no valid scene has, would be black.
                 color: traced.color.max(Rgb::ZERO).min(Rgb::ONE),
                 signature: traced.signature,
+                cell: traced.cell,
                 rays: traced.rays,
             }));
         }

@@ -14,7 +14,8 @@ use crate::{
     aa::{
         Sample,
         estimate::{
-            Spread, bare_sequence_share, grid_busy, grid_share, grid_unseen, sequence_unseen,
+            Spread, bare_sequence_share, grid_busy, grid_quarters, grid_quarters_share, grid_share,
+            grid_unseen, sequence_unseen,
         },
         grid_places,
         levels::levels,
@@ -40,7 +41,6 @@ pub(super) fn centers<S: Sampler + Send>(crew: &Crew<S>, area: &Area) -> Picture
         samples: vec![1; area.len()],
         errors: errors.into_inner().unwrap_or_else(PoisonError::into_inner).into_values(),
         outcome: Outcome::default(),
-        factor: 1.0,
     }
 }
 
@@ -60,6 +60,9 @@ pub(super) fn grid<S: Sampler + Send>(crew: &Crew<S>, area: &Area, side: u32) ->
         places.extend(grid_places(DVec2::new(x as f64, y as f64), side));
     };
     let judge = |samples: &[Sample], spread: &Spread| {
+        if side >= 4 {
+            return grid_quarters_share(side) * grid_quarters(samples, side as usize);
+        }
         // Without any edge it is at most half of what it is at one.
         let share = grid_share(side) * if spread.kinds() == 1 { 0.5 } else { 1.0 };
         spread.error(share, grid_busy(samples.iter().map(|sample| sample.signature), side))
@@ -146,6 +149,5 @@ fn even<S: Sampler + Send>(
         samples: vec![rays; area.len()],
         errors: errors.into_inner().unwrap_or_else(PoisonError::into_inner).into_values(),
         outcome: Outcome::default(),
-        factor: 1.0,
     }
 }

@@ -42,8 +42,10 @@ pub(super) struct Pixel {
     pub(super) stage: u8,
     /// Whether a neighbour's signature differs.
     pub(super) suspect: bool,
-    /// The estimated squared error in levels.
+    /// The estimated squared error in levels, by which it is refined.
     pub(super) error: f32,
+    /// What it adds to the picture's.
+    pub(super) expected: f32,
     /// The contrast to the neighbours, zero unless suspect.
     pub(super) contrast: f32,
     /// How often things change around, from 0 to 1; zero unless suspect.
@@ -134,6 +136,7 @@ impl Round<'_> {
             };
             let refined = Refined::new(center, &[a, b, c, d]);
             pixel.error = refined.error(pixel.contrast, pixel.busy);
+            pixel.expected = refined.expected_error(pixel.contrast, pixel.busy);
             pixel.stage = 1;
             pixel.refined = Some(Box::new(refined));
             changed[index] = true;
@@ -210,6 +213,7 @@ impl Round<'_> {
                 refined.add(sample);
             }
             pixel.error = refined.error(pixel.contrast, pixel.busy);
+            pixel.expected = refined.expected_error(pixel.contrast, pixel.busy);
             pixel.stage += 1;
         }
     }

@@ -49,7 +49,7 @@ pub struct UvMap {
 }
 
 impl Texture {
-    /// The colour at a point, in linear light, and which of its colours a pattern shows there (0 for what has no edges).
+    /// The colour at a point, in linear light, and a number of the cell of the pattern there (0 for what has no edges).
     #[inline(always)]
     pub fn at(&self, at: &TexturePoint) -> (Rgb, u32) {
         match self {

@@ -4,6 +4,14 @@ use glam::DVec3;
 
 use crate::{color::Rgb, geometry::Similarity};
 
+/// A number of a pair of whole numbers that tells it from its neighbours, and from those that are skipped where a pixel is wider than
+/// a cell.
+#[inline(always)]
+fn number([a, b]: [f64; 2]) -> u32 {
+    let word = |x: f64| (x as i64) as u32;
+    word(a).wrapping_mul(0x9e37_79b1) ^ word(b).wrapping_mul(0x85eb_ca77)
+}
+
 /// Squares in the plane of x and z: the colour is `even` where ⌊(x − oₓ)/s⌋ + ⌊(z − o_z)/s⌋ is even.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Checker {
@@ -18,12 +26,13 @@ pub struct Checker {
 }
 
 impl Checker {
-    /// The colour at a point, and its number: 0 for even, 1 for odd.
+    /// The colour at a point, and a number of its square.
     #[inline(always)]
     pub fn at(&self, p: DVec3) -> (Rgb, u32) {
         let cell = ((p - self.origin) / self.size).floor();
         let half = (cell.x + cell.z) * 0.5;
-        if half == half.floor() { (self.even, 0) } else { (self.odd, 1) }
+        let color = if half == half.floor() { self.even } else { self.odd };
+        (color, number([cell.x, cell.z]))
     }
 
     pub(super) fn mapped(self, map: &Similarity) -> Self {
@@ -50,16 +59,23 @@ pub struct Plaid {
 }
 
 impl Plaid {
-    /// The colour at a point, and its number: how many stripes are there.
+    /// The colour at a point, and a number of the stripes, and the gaps between them, that it is on.
     #[inline(always)]
     pub fn at(&self, p: DVec3) -> (Rgb, u32) {
         let q = (p - self.origin) / self.size;
-        let on_stripe = |cell: f64| cell.floor().rem_euclid(3.0) < 0.5;
-        match (on_stripe(q.x + q.y), on_stripe(q.x - q.y)) {
-            (true, true) => (self.stripe, 2),
-            (false, false) => (self.ground, 0),
-            _ => (self.mixed, 1),
-        }
+        // Stripe k begins at 3 k, the gap behind it at 3 k + 1.
+        let band = |cell: f64| {
+            let (cell, stripe) = (cell.floor(), (cell / 3.0).floor());
+            let is_stripe = cell - 3.0 * stripe < 0.5;
+            (is_stripe, 2.0 * stripe + if is_stripe { 0.0 } else { 1.0 })
+        };
+        let ((one, first), (two, second)) = (band(q.x + q.y), band(q.x - q.y));
+        let color = match (one, two) {
+            (true, true) => self.stripe,
+            (false, false) => self.ground,
+            _ => self.mixed,
+        };
+        (color, number([first, second]))
     }
 
     pub(super) fn mapped(self, map: &Similarity) -> Self {

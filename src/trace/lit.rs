@@ -162,18 +162,19 @@ impl Lit {
         }
     }
 
-    /// The light that the hit of a lane gives back, and its signature.
+    /// The light that the hit of a lane gives back, its signature, and a number of the cell of its pattern.
     #[inline(always)]
-    pub(super) fn show(&self, k: usize, material: &Material) -> (Rgb, u32) {
+    pub(super) fn show(&self, k: usize, material: &Material) -> (Rgb, u32, u32) {
         let lane = |channels: &[Singles; 3]| Rgb::from_array(channels.each_ref().map(|c| c[k]));
         let (diffuse, mut light) = (lane(&self.diffuse), lane(&self.specular));
-        let mut path = Path::of(self.path[k]);
+        let (mut path, mut number) = (Path::of(self.path[k]), 0);
         if diffuse != Rgb::ZERO && material.opacity > 0.0 {
             let at = TexturePoint { uv: self.surfaces.uv[k], point: self.surfaces.point.get(k) };
             let (color, cell) = material.texture.at(&at);
             light += diffuse * color * self.surfaces.tint[k] * material.opacity;
             path = path.cell(cell);
+            number = cell;
         }
-        (light, path.signature())
+        (light, path.signature(), number)
     }
 }

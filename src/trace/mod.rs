@@ -46,6 +46,8 @@ pub struct Sample {
     /// A hash of all that the ray tree met: surfaces and their sides, cells of patterns, which lights were seen through what.
     /// Two samples with the same signature differ by what varies smoothly.
     pub signature: u32,
+    /// A number of the cell of the pattern that the camera ray itself met; 0 for none.
+    pub cell: u32,
     /// How many rays it took, those towards lights included.
     pub rays: u32,
 }
@@ -80,6 +82,7 @@ impl Task {
 struct Gathered {
     color: Sum,
     signature: u32,
+    cell: u32,
     rays: u32,
 }
 
@@ -166,8 +169,12 @@ impl<'a> Tracer<'a> {
             self.scene.accel().run(Run(self));
         }
         samples.clear();
-        let sample =
-            |g: &Gathered| Sample { color: g.color.value(), signature: g.signature, rays: g.rays };
+        let sample = |g: &Gathered| Sample {
+            color: g.color.value(),
+            signature: g.signature,
+            cell: g.cell,
+            rays: g.rays,
+        };
         samples.extend(self.gathered.iter().map(sample));
     }
 
@@ -315,8 +322,12 @@ impl<'a> Tracer<'a> {
         for k in lanes(self.lit.lanes()) {
             let task = &self.batch.tasks[k];
             let material = self.scene.material(self.batch.hits.primitive[k]);
-            let (light, signature) = self.lit.show(k, material);
-            self.gathered[task.sample as usize].add(task.weight * light, signature);
+            let (light, signature, cell) = self.lit.show(k, material);
+            let gathered = &mut self.gathered[task.sample as usize];
+            gathered.add(task.weight * light, signature);
+            if task.level == 1 {
+                gathered.cell = cell;
+            }
         }
     }
 }
