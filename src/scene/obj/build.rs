@@ -136,6 +136,16 @@ impl<'a> Builder<'a> {
             let message = "`usemtl`, but no `mtllib` names a material library; grey is used";
             warnings.push(self.warning(Tally { count: 1, line: *line }, message.to_owned()));
         }
+        // A picture matters only where a face wears it; several materials may want the same.
+        for (name, _) in
+            self.obj.sections.iter().filter_map(|s| self.obj.materials.get(s.material as usize))
+        {
+            if let Some(missing) = library.missing_picture(name)
+                && warnings.iter().all(|w| w.message != missing.message)
+            {
+                warnings.push(missing.clone());
+            }
+        }
         for (name, line) in &self.obj.materials {
             let Some((material, bare)) = library.material(name) else {
                 // Without any library that was said already.
