@@ -15,6 +15,7 @@ pub mod obj;
 pub mod open;
 mod parts;
 mod report;
+mod shapes;
 mod stage;
 #[cfg(test)]
 mod tests;

@@ -159,6 +159,9 @@ const OBJECT: &[Key] = &[
     must("shape", Kind::OneOf(SHAPE), "the shape"),
 ];
 
+const BASE: Key = must("base", Kind::Vector, "the middle of one end");
+const TOP: Key = must("top", Kind::Vector, "the middle of the other");
+
 pub(super) const SHAPE: &[Key] = &[
     must(
         "sphere",
@@ -171,8 +174,8 @@ pub(super) const SHAPE: &[Key] = &[
     must(
         "cylinder",
         Kind::Table(&[
-            must("base", Kind::Vector, "the middle of one end"),
-            must("top", Kind::Vector, "the middle of the other"),
+            BASE,
+            TOP,
             must("radius", POSITIVE, "its radius"),
             must("ends", ENDS, "whether discs close it"),
         ]),
@@ -191,8 +194,8 @@ pub(super) const SHAPE: &[Key] = &[
     must(
         "frustum",
         Kind::Table(&[
-            must("base", Kind::Vector, "the middle of one end"),
-            must("top", Kind::Vector, "the middle of the other"),
+            BASE,
+            TOP,
             must("base_radius", POSITIVE, "the radius at the base"),
             must("top_radius", POSITIVE, "the radius at the top"),
         ]),
