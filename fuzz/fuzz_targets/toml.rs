@@ -2,24 +2,18 @@
 
 #![no_main]
 
-use whitted::scene::{Parts, Scene, SceneError, builtin, format::SceneText};
+use whitted::scene::{Scene, SceneError, builtin, format::SceneText};
 
 libfuzzer_sys::fuzz_target!(|text: &str| {
-    match SceneText::parse("fuzz", text, &|file| file.starts_with(builtin::PREFIX)) {
+    let mut no_models = |name: &str| Err(SceneError::ModelWithoutFile { name: name.to_owned() });
+    let parts = SceneText::parse("fuzz", text, &|file| file.starts_with(builtin::PREFIX))
+        .and_then(|scene| scene.parts(&mut builtin::picture, &mut no_models));
+    match parts {
+        Ok(parts) => {
+            let _ = Scene::assemble("fuzz", parts);
+        }
         Err(faults) => {
             let _ = faults.to_string();
-        }
-        Ok(scene) => {
-            let none = |name: &str| Err(SceneError::ModelWithoutFile { name: name.to_owned() });
-            match Parts::gather(&scene.desc, &mut builtin::picture, &mut { none }) {
-                Ok(parts) => {
-                    let _ = Scene::assemble("fuzz", parts);
-                }
-                Err(found) => {
-                    let found = found.into_iter().map(|(place, error)| (place, error.to_string()));
-                    let _ = scene.faults(found.collect()).to_string();
-                }
-            }
         }
     }
 });

@@ -4,17 +4,20 @@ use std::fmt::Write;
 
 use serde::Serialize;
 use whitted::scene::obj::{ModelReport, inspect_model};
-use whitted::scene::{LoadOptions, Loaded, Warning};
+use whitted::scene::{Warning, inspect_scene};
 
 use super::args::InspectArgs;
 use super::failure::{Failure, warn};
-use super::streams;
+use super::{inspect_scene as scene, streams};
 
 pub(crate) fn run(args: &InspectArgs) -> Result<(), Failure> {
     let is_model =
         args.file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj"));
     if !is_model {
-        return scene(args);
+        let report = inspect_scene(&args.file.to_string_lossy())?;
+        let text = if args.json { scene::json(&report)? } else { scene::text(&report)? };
+        streams::write_stdout(text.as_bytes())?;
+        return warn(&report.warnings, args.strict, true);
     }
     let report = inspect_model(&args.file)?;
     let text = if args.json { json(&report)? } else { text(&report)? };
@@ -22,51 +25,11 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), Failure> {
     warn(&report.warnings, args.strict, true)
 }
 
-/// A scene: what it is made of.
-fn scene(args: &InspectArgs) -> Result<(), Failure> {
-    let name = args.file.to_string_lossy();
-    let Loaded { scene, warnings } = whitted::scene::load(&name, &LoadOptions::default())?;
-    let [width, height] = scene.resolution();
-    let text = if args.json {
-        let json = JsonScene {
-            scene: scene.name(),
-            resolution: [width, height],
-            depth: scene.depth(),
-            primitives: scene.primitive_count(),
-            lights: scene.light_count(),
-            warnings: json_warnings(&warnings),
-        };
-        serde_json::to_string_pretty(&json)? + "\n"
-    } else {
-        let mut out = String::new();
-        writeln!(out, "{}", scene.name())?;
-        writeln!(out, "picture      {width}x{height} pixels, depth {}", scene.depth())?;
-        writeln!(out, "primitives   {}", scene.primitive_count())?;
-        writeln!(out, "lights       {}", scene.light_count())?;
-        for warning in &warnings {
-            writeln!(out, "warning      {warning}")?;
-        }
-        out
-    };
-    streams::write_stdout(text.as_bytes())?;
-    warn(&warnings, args.strict, true)
-}
-
-fn json_warnings(warnings: &[Warning]) -> Vec<JsonWarning<'_>> {
+pub(super) fn json_warnings(warnings: &[Warning]) -> Vec<JsonWarning<'_>> {
     warnings
         .iter()
         .map(|Warning { file, line, message }| JsonWarning { file, line: *line, message })
         .collect()
-}
-
-#[derive(Serialize)]
-struct JsonScene<'a> {
-    scene: &'a str,
-    resolution: [u32; 2],
-    depth: u32,
-    primitives: usize,
-    lights: usize,
-    warnings: Vec<JsonWarning<'a>>,
 }
 
 #[derive(Serialize)]
@@ -111,7 +74,7 @@ struct JsonTexture<'a> {
 }
 
 #[derive(Serialize)]
-struct JsonWarning<'a> {
+pub(super) struct JsonWarning<'a> {
     file: &'a str,
     line: u32,
     message: &'a str,
@@ -168,7 +131,7 @@ fn text(report: &ModelReport) -> Result<String, std::fmt::Error> {
         report.degenerate_faces, report.duplicate_faces
     )?;
     writeln!(out, "area         {}", report.area)?;
-    writeln!(out, "bounds       ({min}) to ({max})")?;
+    writeln!(out, "bounds       {min} to {max}")?;
     if report.closed {
         writeln!(out, "closed       yes")?;
     } else {

@@ -4,6 +4,7 @@ mod args;
 mod compare;
 mod failure;
 mod inspect;
+mod inspect_scene;
 mod memory;
 mod progress;
 mod render;

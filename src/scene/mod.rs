@@ -14,6 +14,8 @@ pub mod nff;
 pub mod obj;
 pub mod open;
 mod parts;
+mod report;
+mod shapes;
 mod stage;
 #[cfg(test)]
 mod tests;
@@ -28,6 +30,7 @@ pub use self::{
     error::SceneError,
     open::{LoadOptions, Loaded, ModelPlace, load},
     parts::{CameraPlan, MeshPart, Parts},
+    report::{Names, SceneReport, inspect_scene},
     warning::Warning,
 };
 use crate::{

@@ -7,11 +7,13 @@ use glam::DVec3;
 use super::{
     Scene,
     builtin::{self, builtins},
+    desc::{SceneDesc, TextureDesc},
     error::SceneError,
     format::SceneText,
-    nff,
+    nff::{self, NffCounts},
     obj::{self, files},
     parts::{CameraPlan, Parts, Placement},
+    report::Names,
     stage, text,
     warning::Warning,
 };
@@ -57,41 +59,32 @@ pub struct Loaded {
     pub warnings: Vec<Warning>,
 }
 
+/// A scene that is not yet built, and what its files say besides.
+pub(super) struct Gathered {
+    name: String,
+    pub(super) parts: Parts,
+    pub(super) names: Names,
+    /// The entities of an NFF file.
+    pub(super) entities: Option<NffCounts>,
+    pub(super) warnings: Vec<Warning>,
+}
+
 /// The scene that `name` means: the built-in one of that name, or the file.
 ///
 /// # Errors
 /// There is no such scene, or what is wrong with it.
 pub fn load(name: &str, options: &LoadOptions) -> Result<Loaded, SceneError> {
-    let mut warnings = Vec::new();
-    let (short, mut parts) = if let Some(found) = builtins().iter().find(|b| b.name == name) {
-        (name.to_owned(), found.parts(options.objects)?)
-    } else {
-        let path = Path::new(name);
-        let kind = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-        if options.objects.is_some() {
-            let known = "spheres".to_owned();
-            return Err(SceneError::NotGenerated { name: name.to_owned(), known });
-        }
-        let parts = match kind.as_deref() {
-            Some("obj") => model_alone(path, options, &mut warnings)?,
-            Some("toml") => scene_file(path, &mut warnings)?,
-            Some("nff") => {
-                let scene = nff::load_nff(path, options.rows)?;
-                warnings.extend(scene.warnings);
-                scene.parts
-            }
-            _ => {
-                let known = builtins().iter().map(|b| b.name).collect::<Vec<_>>().join(", ");
-                return Err(SceneError::UnknownFile { name: name.to_owned(), known });
-            }
-        };
-        let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        (stem, parts)
-    };
+    let Gathered { name, parts, warnings, .. } = gather(name, options)?;
+    Ok(Loaded { scene: Scene::assemble(&name, parts)?, warnings })
+}
+
+/// The parts of the scene that `name` means, changed as the user likes.
+pub(super) fn gather(name: &str, options: &LoadOptions) -> Result<Gathered, SceneError> {
+    let mut found = found(name, options)?;
     for place in &options.models {
-        add(&mut parts, place, &mut warnings)?;
+        add(&mut found.parts, place, &mut found.warnings)?;
     }
-    let CameraPlan { eye, look_at, up, vertical_fov } = &mut parts.camera;
+    let CameraPlan { eye, look_at, up, vertical_fov } = &mut found.parts.camera;
     for (ours, users) in [(eye, options.eye), (look_at, options.look_at), (up, options.up)] {
         if let Some(value) = users {
             *ours = value;
@@ -100,7 +93,52 @@ pub fn load(name: &str, options: &LoadOptions) -> Result<Loaded, SceneError> {
     if let Some(fov) = options.fov {
         *vertical_fov = fov;
     }
-    Ok(Loaded { scene: Scene::assemble(&short, parts)?, warnings })
+    Ok(found)
+}
+
+/// The parts of the scene that `name` means, as they are.
+fn found(name: &str, options: &LoadOptions) -> Result<Gathered, SceneError> {
+    let (mut warnings, mut entities) = (Vec::new(), None);
+    if let Some(found) = builtins().iter().find(|b| b.name == name) {
+        let parts = found.parts(options.objects)?;
+        let names = found.desc().map_or_else(|_| Names::default(), |desc| names(&desc));
+        return Ok(Gathered { name: name.to_owned(), parts, names, entities, warnings });
+    }
+    let path = Path::new(name);
+    let kind = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+    if options.objects.is_some() {
+        let known = "spheres".to_owned();
+        return Err(SceneError::NotGenerated { name: name.to_owned(), known });
+    }
+    let (parts, names) = match kind.as_deref() {
+        Some("obj") => (model_alone(path, options, &mut warnings)?, Names::default()),
+        Some("toml") => scene_file(path, &mut warnings)?,
+        Some("nff") => {
+            let scene = nff::load_nff(path, options.rows)?;
+            warnings.extend(scene.warnings);
+            entities = Some(scene.counts);
+            (scene.parts, Names::default())
+        }
+        _ => {
+            let known = builtins().iter().map(|b| b.name).collect::<Vec<_>>().join(", ");
+            return Err(SceneError::UnknownFile { name: name.to_owned(), known });
+        }
+    };
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(Gathered { name: stem, parts, names, entities, warnings })
+}
+
+/// What a description calls its parts.
+fn names(desc: &SceneDesc) -> Names {
+    let picture = |(name, texture): (&String, &TextureDesc)| match texture {
+        TextureDesc::Image(file) => Some((name.clone(), file.clone())),
+        TextureDesc::Checker { .. } | TextureDesc::Plaid { .. } => None,
+    };
+    Names {
+        materials: desc.material.keys().cloned().collect(),
+        pictures: desc.texture.iter().filter_map(picture).collect(),
+        models: desc.model.iter().map(|model| model.file.clone()).collect(),
+    }
 }
 
 fn model_alone(
@@ -119,7 +157,7 @@ fn model_alone(
 }
 
 /// The scene of a TOML file; what it names is looked for beside it.
-fn scene_file(path: &Path, warnings: &mut Vec<Warning>) -> Result<Parts, SceneError> {
+fn scene_file(path: &Path, warnings: &mut Vec<Warning>) -> Result<(Parts, Names), SceneError> {
     let shown = path.display().to_string();
     let not_read = |source| SceneError::Text { path: shown.clone(), source };
     let bytes = text::read_limited(path, LARGEST_SCENE).map_err(not_read)?;
@@ -138,10 +176,8 @@ fn scene_file(path: &Path, warnings: &mut Vec<Warning>) -> Result<Parts, SceneEr
         warnings.append(&mut model.warnings);
         Ok(model)
     };
-    Parts::gather(&scene.desc, &mut images, &mut models).map_err(|found| {
-        let found = found.into_iter().map(|(place, error)| (place, error.to_string())).collect();
-        SceneError::Invalid(scene.faults(found))
-    })
+    let names = names(scene.desc());
+    Ok((scene.parts(&mut images, &mut models)?, names))
 }
 
 /// The largest scene file that is read, in bytes.

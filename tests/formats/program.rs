@@ -85,3 +85,33 @@ fn inspection_is_json() {
     assert_eq!(json["textures"][0]["found"], true);
     assert_eq!(json["bounds"][1].as_array().map(Vec::len), Some(3));
 }
+
+/// Oracle: the table of the standard scenes, and the text of the assignment.
+#[test]
+fn scenes_are_inspected() {
+    let inspect = |scene: &str| -> serde_json::Value {
+        let output = whitted(&["inspect", scene, "--json"]);
+        serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{}", stderr(&output)))
+    };
+    let rings = inspect(&file("tests/formats/spd/rings.nff").display().to_string());
+    let entities = &rings["entities"];
+    let counts = ["cylinders", "spheres", "polygons", "surfaces", "lights"];
+    assert_eq!(counts.map(|key| entities[key].as_u64()), [900, 900, 1, 181, 3].map(Some));
+    assert_eq!((&rings["primitives"], &rings["lights"]), (&1801.into(), &3.into()));
+    let text = std::fs::read_to_string(file("tests/formats/spd/rings.nff")).expect("a scene");
+    let from = text.lines().find_map(|line| line.strip_prefix("from ")).expect("a view");
+    let from: Vec<f64> = from.split_whitespace().map(|x| x.parse().expect("a number")).collect();
+    assert_eq!(rings["camera"]["eye"], serde_json::json!(from));
+    let assignment = inspect("assignment");
+    let shown =
+        String::from_utf8(whitted(&["scenes", "--show", "assignment"]).stdout).expect("text");
+    assert_eq!(assignment["shapes"]["spheres"], shown.matches("shape.sphere =").count());
+    assert_eq!(
+        assignment["material_names"].as_array().map(Vec::len),
+        Some(shown.matches("[material.").count())
+    );
+    assert_eq!(assignment["textures"][0]["found"], true);
+    let output = whitted(&["inspect", "assignment"]);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(text.contains("primitives   17\n"), "{text}");
+}

@@ -12,9 +12,10 @@ use super::{
     fault::{Fault, Faults},
     keys::{Key, Kind, Range, SCENE},
     nearest,
+    sound::Sound,
 };
 
-type Value<'a> = Spanned<DeValue<'a>>;
+pub(super) type Value<'a> = Spanned<DeValue<'a>>;
 
 /// Goes through a text and gathers its faults.
 #[derive(Debug)]
@@ -49,14 +50,17 @@ impl<'a> Checker<'a> {
         Faults { file: self.name.to_owned(), faults }
     }
 
-    /// Finds the faults; `exists` says whether a file that is named is there.
-    pub(super) fn check(&mut self, exists: &dyn Fn(&str) -> bool) {
+    /// Finds the faults; `exists` says whether a file that is named is there. What is sound beside them is given back,
+    /// unless the text cannot be parsed at all.
+    pub(super) fn check(&mut self, exists: &dyn Fn(&str) -> bool) -> Option<Sound> {
         let root = std::mem::replace(&mut self.root, Spanned::new(0..0, DeTable::new()));
         // What could not be parsed may be what seems to be missing.
         let is_whole = self.faults.is_empty();
         let walk = Walk { root: root.get_ref(), exists, is_whole };
         walk.table(root.get_ref(), SCENE, 0..0, "the scene", &mut self.faults);
+        let sound = (is_whole && !self.faults.is_empty()).then(|| Sound::read(&walk));
         self.root = root;
+        sound
     }
 
     /// Where in the text a part of the scene is.
@@ -76,12 +80,13 @@ impl<'a> Checker<'a> {
     }
 }
 
-fn find<'t, 'a>(table: &'t DeTable<'a>, name: &str) -> Option<&'t Value<'a>> {
+pub(super) fn find<'t, 'a>(table: &'t DeTable<'a>, name: &str) -> Option<&'t Value<'a>> {
     table.iter().find(|(key, _)| key.get_ref() == name).map(|(_, value)| value)
 }
 
-struct Walk<'t, 'a> {
-    root: &'t DeTable<'a>,
+/// Goes through the parts of a text.
+pub(super) struct Walk<'t, 'a> {
+    pub(super) root: &'t DeTable<'a>,
     exists: &'t dyn Fn(&str) -> bool,
     is_whole: bool,
 }
@@ -116,7 +121,8 @@ impl Walk<'_, '_> {
         }
     }
 
-    fn value(&self, value: &Value, kind: Kind, name: &str, found: &mut Found) {
+    /// Finds what is wrong with the value of the key `name`.
+    pub(super) fn value(&self, value: &Value, kind: Kind, name: &str, found: &mut Found) {
         let span = value.span();
         let mut wrong = |expected: &str| {
             let what = shown(value.get_ref());

@@ -88,7 +88,7 @@ pub(super) const SCENE: &[Key] = &[
     may("model", Kind::List(&Kind::Table(MODEL)), "models from OBJ files"),
 ];
 
-const CAMERA: &[Key] = &[
+pub(super) const CAMERA: &[Key] = &[
     must("eye", Kind::Vector, "where the camera is"),
     must("look_at", Kind::Vector, "a point in the middle of the picture"),
     must("up", Kind::Vector, "a direction that is up in the picture"),
@@ -99,12 +99,12 @@ const CAMERA: &[Key] = &[
     ),
 ];
 
-const LIGHT: &[Key] = &[
+pub(super) const LIGHT: &[Key] = &[
     must("position", Kind::Vector, "where the light is"),
     must("intensity", WEIGHT, "how bright it is"),
 ];
 
-const TEXTURE: &[Key] = &[
+pub(super) const TEXTURE: &[Key] = &[
     must("checker", Kind::Table(CHECKER), "squares in the plane of x and z"),
     must("plaid", Kind::Table(PLAID), "diagonal stripes in the plane of x and y"),
     must(
@@ -132,7 +132,7 @@ const PLAID: &[Key] = &[
     must("size", POSITIVE, "a third of the distance from stripe to stripe along x"),
 ];
 
-const MATERIAL: &[Key] = &[
+pub(super) const MATERIAL: &[Key] = &[
     may("color", Kind::Color, "the colour, if there is no texture; default white"),
     may("texture", Kind::Name("texture"), "the name of a texture"),
     may("ambient", WEIGHT, "weight of the light that is everywhere; default 0"),
@@ -159,7 +159,10 @@ const OBJECT: &[Key] = &[
     must("shape", Kind::OneOf(SHAPE), "the shape"),
 ];
 
-const SHAPE: &[Key] = &[
+const BASE: Key = must("base", Kind::Vector, "the middle of one end");
+const TOP: Key = must("top", Kind::Vector, "the middle of the other");
+
+pub(super) const SHAPE: &[Key] = &[
     must(
         "sphere",
         Kind::Table(&[
@@ -171,8 +174,8 @@ const SHAPE: &[Key] = &[
     must(
         "cylinder",
         Kind::Table(&[
-            must("base", Kind::Vector, "the middle of one end"),
-            must("top", Kind::Vector, "the middle of the other"),
+            BASE,
+            TOP,
             must("radius", POSITIVE, "its radius"),
             must("ends", ENDS, "whether discs close it"),
         ]),
@@ -191,8 +194,8 @@ const SHAPE: &[Key] = &[
     must(
         "frustum",
         Kind::Table(&[
-            must("base", Kind::Vector, "the middle of one end"),
-            must("top", Kind::Vector, "the middle of the other"),
+            BASE,
+            TOP,
             must("base_radius", POSITIVE, "the radius at the base"),
             must("top_radius", POSITIVE, "the radius at the top"),
         ]),
@@ -243,7 +246,7 @@ const SHAPE: &[Key] = &[
     ),
 ];
 
-const MODEL: &[Key] = &[
+pub(super) const MODEL: &[Key] = &[
     must("file", Kind::File, "an OBJ file beside the scene's"),
     may("scale", POSITIVE, "what its lengths are multiplied by; default 1"),
     may("rotate", Kind::Vector, "turns about x, then y, then z, in degrees; default none"),

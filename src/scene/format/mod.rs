@@ -5,14 +5,20 @@ mod fault;
 mod keys;
 mod nearest;
 mod schema;
+mod sound;
 
 pub use self::{
     fault::{Fault, Faults},
     nearest::nearest,
     schema::schema,
 };
-use super::desc::SceneDesc;
+use super::{
+    desc::SceneDesc,
+    load::{ImageSource, ModelSource},
+    parts::Parts,
+};
 use check::Checker;
+use sound::Sound;
 
 /// A place in a scene's description, for saying where something is wrong with it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -35,27 +41,29 @@ pub enum Place {
 #[derive(Debug)]
 pub struct SceneText<'a> {
     checker: Checker<'a>,
-    /// The description.
-    pub desc: SceneDesc,
+    /// The description; if the text is faulty, what is sound of it.
+    sound: Sound,
 }
 
 impl<'a> SceneText<'a> {
     /// Reads the description in `text`, that of the file `name`; `exists` says whether a file that it names is there.
     ///
     /// # Errors
-    /// All that is wrong with it: syntax, unknown, missing and mistyped keys, values out of range, undefined names.
+    /// What is wrong with a text of which nothing can be used.
     pub fn parse(
         name: &'a str,
         text: &'a str,
         exists: &dyn Fn(&str) -> bool,
     ) -> Result<Self, Faults> {
         let mut checker = Checker::new(name, text);
-        checker.check(exists);
+        if let Some(sound) = checker.check(exists) {
+            return Ok(Self { checker, sound });
+        }
         if !checker.faults.is_empty() {
             return Err(checker.into_faults());
         }
         match toml::from_str(text) {
-            Ok(desc) => Ok(Self { checker, desc }),
+            Ok(desc) => Ok(Self { checker, sound: Sound::all(desc) }),
             // The table of keys and the types disagree; the message is still the user's.
             Err(error) => {
                 checker.fault(error.span().unwrap_or(0..0), error.message().to_owned());
@@ -64,12 +72,30 @@ impl<'a> SceneText<'a> {
         }
     }
 
-    /// What was found wrong later on, with its places in the text.
-    pub fn faults(mut self, found: Vec<(Place, String)>) -> Faults {
-        for (place, message) in found {
-            let span = self.checker.span(&place);
-            self.checker.fault(span, message);
+    /// The description; if the text is faulty, what is sound of it.
+    pub fn desc(&self) -> &SceneDesc {
+        &self.sound.desc
+    }
+
+    /// The parts of the scene; `images` and `models` find what it names.
+    ///
+    /// # Errors
+    /// All that is wrong with it: unknown, missing and mistyped keys, values out of range, undefined names, shapes without
+    /// size, files that cannot be used.
+    pub fn parts(
+        mut self,
+        images: &mut ImageSource,
+        models: &mut ModelSource,
+    ) -> Result<Parts, Faults> {
+        let found = match Parts::gather(&self.sound.desc, images, models) {
+            Ok(parts) if self.checker.faults.is_empty() => return Ok(parts),
+            Ok(_) => Vec::new(),
+            Err(found) => found,
+        };
+        for (place, error) in found {
+            let span = self.checker.span(&self.sound.in_text(place));
+            self.checker.fault(span, error.to_string());
         }
-        self.checker.into_faults()
+        Err(self.checker.into_faults())
     }
 }

@@ -1,6 +1,6 @@
 //! Whether faces close a space.
 
-use super::{normals::NumberMap, parse::Obj, report::OpenEdge};
+use super::{lists::Obj, normals::NumberMap, report::OpenEdge};
 
 /// How many of the open edges are told.
 const EXAMPLES: usize = 8;

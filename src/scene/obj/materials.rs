@@ -40,11 +40,20 @@ const LARGEST_LIBRARY: u64 = 1 << 28;
 /// The materials of the libraries of a model.
 #[derive(Debug, Default)]
 pub(super) struct Library {
-    materials: HashMap<String, (Mtl, Option<Arc<Image>>)>,
+    materials: HashMap<String, Entry>,
     pub(super) textures: Vec<TextureReport>,
     pub(super) warnings: Vec<Warning>,
     /// Whether a library was named at all.
     pub(super) is_named: bool,
+}
+
+/// A material, and the picture it wears.
+#[derive(Debug)]
+struct Entry {
+    mtl: Mtl,
+    image: Option<Arc<Image>>,
+    /// What is wrong with the picture, for the user to know if a face uses the material.
+    missing: Option<Warning>,
 }
 
 impl Library {
@@ -102,7 +111,8 @@ impl Library {
     pub(super) fn parse(path: &str, text: &[u8]) -> Self {
         let mut library = Self { is_named: true, ..Self::default() };
         for material in mtl::parse(path, text, &mut library.warnings) {
-            library.materials.entry(material.name.clone()).or_insert((material, None));
+            let entry = library.materials.entry(material.name.clone());
+            entry.or_insert(Entry { mtl: material, image: None, missing: None });
         }
         library
     }
@@ -122,7 +132,7 @@ impl Library {
         let pictures: HashMap<String, Result<Arc<Image>, String>> =
             names.iter().map(|name| (*name).to_owned()).zip(pictures).collect();
         for (file, material) in materials {
-            let mut image = None;
+            let (mut image, mut missing) = (None, None);
             if let Some(PictureRef { name, line, .. }) = &material.picture {
                 let found = pictures.get(name);
                 self.textures.push(TextureReport {
@@ -134,23 +144,20 @@ impl Library {
                     Some(Ok(picture)) => image = Some(Arc::clone(picture)),
                     Some(Err(reason)) => {
                         let message = format!("{reason}; the colour `Kd` is used");
-                        let warning = Warning { file: file.clone(), line: *line, message };
-                        let is_new = |w: &Warning| w.message != warning.message;
-                        if self.warnings.iter().all(is_new) {
-                            self.warnings.push(warning);
-                        }
+                        missing = Some(Warning { file, line: *line, message });
                     }
                     None => {}
                 }
             }
             // The first of a name wins, as in other readers.
-            self.materials.entry(material.name.clone()).or_insert((material, image));
+            let entry = self.materials.entry(material.name.clone());
+            entry.or_insert(Entry { mtl: material, image, missing });
         }
     }
 
     /// The material of this name, and the one for faces without surface coordinates if that is another.
     pub(super) fn material(&self, name: &str) -> Option<(Material, Option<Material>)> {
-        let (mtl, image) = self.materials.get(name)?;
+        let Entry { mtl, image, .. } = self.materials.get(name)?;
         let plain = whitted(mtl);
         let (Some(image), Some(picture)) = (image, &mtl.picture) else {
             return Some((plain, None));
@@ -158,6 +165,11 @@ impl Library {
         let map = UvMap { scale: picture.scale, offset: picture.offset, clamp: picture.clamp };
         let texture = Texture::Repeated(Arc::clone(image), map);
         Some((Material { texture, ..plain.clone() }, Some(plain)))
+    }
+
+    /// What is wrong with the picture of the material of this name.
+    pub(super) fn missing_picture(&self, name: &str) -> Option<&Warning> {
+        self.materials.get(name)?.missing.as_ref()
     }
 
     /// Whether any material was found.

@@ -7,13 +7,18 @@
 
 mod build;
 mod closed;
+mod cut;
 mod error;
+mod faces;
 pub(crate) mod files;
+mod lists;
 mod materials;
 mod mtl;
 mod normals;
-mod parse;
+mod parts;
 mod report;
+mod statement;
+mod vertices;
 mod weld;
 
 use std::path::Path;
@@ -73,22 +78,24 @@ pub fn inspect_model(path: &Path) -> Result<ModelReport, ModelError> {
 pub fn parse_model(name: &str, obj: &[u8], mtl: &[u8]) -> Result<Model, ModelError> {
     let not_read = |source| ModelError::Text { path: name.to_owned(), source };
     let text = text::decode(obj).map_err(not_read)?;
-    let obj = parse::Obj::parse(name, &text)?;
+    let obj = lists::Obj::parse(name, &text)?;
     let library = text::decode(mtl).map(|text| materials::Library::parse(name, &text));
     build::Builder::new(name, obj, library.map_err(not_read)?)?.model()
 }
 
 /// The statements of a file; its materials and pictures are read meanwhile.
-fn read(path: &Path) -> Result<(parse::Obj, materials::Library), ModelError> {
+fn read(path: &Path) -> Result<(lists::Obj, materials::Library), ModelError> {
     let shown = path.display().to_string();
     let not_read = |source| ModelError::Text { path: shown.clone(), source };
     let bytes = text::read_limited(path, LARGEST_FILE).map_err(not_read)?;
     let text = text::decode(&bytes).map_err(not_read)?;
-    let (obj, library) = rayon::join(
-        || parse::Obj::parse(&shown, &text),
+    let (parts, library) = rayon::join(
+        || parts::Parts::read(&shown, &text, parts::PART),
         || materials::Library::read(path, &libraries(&text)),
     );
-    Ok((obj?, library))
+    drop(text);
+    drop(bytes);
+    Ok((lists::Obj::join(&shown, parts?)?, library))
 }
 
 /// The `mtllib` statements of a text, found without reading the rest.

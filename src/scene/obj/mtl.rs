@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::parse::shown;
+use super::statement::shown;
 use crate::scene::{
     text::{Lines, Tokens, float, integer, name_of},
     warning::Warning,

@@ -1,37 +1,24 @@
 //! Normals for faces that have none: by smoothing group, or where faces meet at a small angle.
+//!
+//! Which corners share a normal is settled point by point, among the corners around it alone, so that the points are
+//! spread over the threads.
 
-use std::collections::HashMap;
+use std::{collections::HashMap, ops::Range};
 
 use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 
-use super::parse::{NONE, Obj, Smoothing};
-use super::weld::mix;
-use crate::math::scale;
+use super::{
+    lists::{NONE, Obj, Smoothing},
+    weld::mix,
+};
+use crate::{geometry::triangulate::vector_area, math::scale};
 
 /// Faces without smoothing groups are smooth where they meet at less than this angle.
 const CREASE_DEGREES: f64 = 30.0;
 
-/// A corner of a face as one of the corners around its point, linked to others that share its normal.
-#[derive(Debug)]
-struct Links {
-    parent: Vec<u32>,
-}
-
-impl Links {
-    fn find(&mut self, mut x: u32) -> u32 {
-        while self.parent[x as usize] != x {
-            let grandparent = self.parent[self.parent[x as usize] as usize];
-            self.parent[x as usize] = grandparent;
-            x = grandparent;
-        }
-        x
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.find(a), self.find(b));
-        self.parent[a.max(b) as usize] = a.min(b);
-    }
-}
+/// How many points are looked at by one thread at a time.
+const BLOCK: usize = 1 << 13;
 
 /// A hasher for keys that are already mixed.
 #[derive(Debug, Default)]
@@ -56,147 +43,249 @@ impl std::hash::Hasher for Mixed {
 /// A map from numbers that trusts nobody's distribution of them.
 pub(super) type NumberMap<V> = HashMap<u64, V, std::hash::BuildHasherDefault<Mixed>>;
 
+/// What the making of normals looks at.
+struct Sight<'a> {
+    obj: &'a Obj,
+    /// The first of the positions equal to each.
+    first: &'a [u32],
+    /// The unit normals of the faces that want normals.
+    units: &'a [DVec3],
+    crease: f64,
+}
+
 /// Gives every corner of the faces of `wanted` without a usable normal one, where its face is to be smooth.
 ///
-/// `areas` are the vector areas of the faces, `first` the first of the positions equal to each. A smooth normal is the mean
-/// of the faces' normals around a point, weighted by their angles there, so that it does not depend on how the
-/// faces are cut.
-pub(super) fn complete(obj: &mut Obj, areas: &[DVec3], first: &[u32], wanted: &[bool]) {
+/// `first` are the first of the positions equal to each. A smooth normal is the mean of the faces' normals around a
+/// point, weighted by their angles there, so that it does not depend on how the faces are cut.
+pub(super) fn complete(obj: &mut Obj, first: &[u32], wanted: &[bool]) {
     if obj.corner_normals.is_empty() {
         obj.corner_normals = vec![NONE; obj.corners.len()];
     }
-    let mut links = Links { parent: (0..obj.corners.len() as u32).collect() };
-    let mut groups: NumberMap<u32> = NumberMap::default();
-    // Faces by edge, as face and corner, in half-full open addressing: files have millions of edges.
-    let is_any_unsaid = !obj.tallies.smoothing_said;
-    let slots = if is_any_unsaid { obj.corners.len() } else { 1 };
-    let mut edges = vec![[NONE; 2]; slots.next_power_of_two().max(4) * 2];
-    let mask = edges.len() - 1;
+    let mut around = Around::new(obj, first, wanted);
+    let units = units(obj, wanted);
     let crease = CREASE_DEGREES.to_radians().cos();
-    let mut missing = vec![false; obj.corners.len()];
-    for_each_face(obj, |obj, face, smoothing| {
+    let sight = Sight { obj, first, units: &units, crease };
+    let blocks = around.blocks().into_par_iter();
+    let made: Vec<Vec<Vec3>> = blocks
+        .map_init(Ring::default, |ring, (starts, corners)| {
+            let mut normals = Vec::new();
+            for ends in starts.windows(2) {
+                let [start, end] = [ends[0], ends[1]].map(|at| (at - starts[0]) as usize);
+                ring.complete(&sight, &mut corners[start..end], &mut normals);
+            }
+            normals
+        })
+        .collect();
+    drop(units);
+    obj.normals.reserve_exact(made.iter().map(Vec::len).sum());
+    for ((_, corners), normals) in around.blocks().into_iter().zip(made) {
+        let base = obj.normals.len() as u32;
+        for [number, corner] in corners.iter().filter(|[number, _]| *number != NONE) {
+            obj.corner_normals[*corner as usize] = base + number;
+        }
+        obj.normals.extend(normals);
+    }
+}
+
+/// The corners of the faces around each point, in the order of the file.
+#[derive(Debug)]
+struct Around {
+    /// Where the corners of each point begin; then where the last end.
+    starts: Vec<u32>,
+    /// Face and corner; when normals are made, the number of the corner's new one in its block, and the corner.
+    corners: Vec<[u32; 2]>,
+}
+
+impl Around {
+    /// Of the faces that are `wanted` and not flat.
+    fn new(obj: &Obj, first: &[u32], wanted: &[bool]) -> Self {
+        let points = obj.positions.len();
+        // Two places on, so that while the corners are put in, the starts move to where they belong.
+        let mut starts = vec![0_u32; points + 2];
+        for_each_corner(obj, wanted, |_, corner| {
+            starts[first[obj.corners[corner] as usize] as usize + 2] += 1;
+        });
+        let mut sum = 0;
+        for start in &mut starts {
+            sum += *start;
+            *start = sum;
+        }
+        let mut corners = vec![[0; 2]; sum as usize];
+        for_each_corner(obj, wanted, |face, corner| {
+            let next = &mut starts[first[obj.corners[corner] as usize] as usize + 1];
+            corners[*next as usize] = [face as u32, corner as u32];
+            *next += 1;
+        });
+        starts.truncate(points + 1);
+        Self { starts, corners }
+    }
+
+    /// Blocks of points: where the corners of each begin, and the corners.
+    fn blocks(&mut self) -> Vec<(&[u32], &mut [[u32; 2]])> {
+        let Self { starts, corners } = self;
+        let points = starts.len() - 1;
+        let mut rest = corners.as_mut_slice();
+        let block = |k: usize| {
+            let starts = &starts[k..=(k + BLOCK).min(points)];
+            let count = (starts[starts.len() - 1] - starts[0]) as usize;
+            let (ours, others) = std::mem::take(&mut rest).split_at_mut(count);
+            rest = others;
+            (starts, ours)
+        };
+        (0..points).step_by(BLOCK).map(block).collect()
+    }
+}
+
+/// Calls `visit` with the corners, and their faces, that are `wanted` and not flat.
+fn for_each_corner(obj: &Obj, wanted: &[bool], mut visit: impl FnMut(usize, usize)) {
+    for (section, faces) in obj.sections_of(0..obj.len()) {
+        if obj.smoothing_of(section) != Smoothing::Off {
+            for face in faces.filter(|face| wanted[*face]) {
+                obj.face(face).for_each(|corner| visit(face, corner));
+            }
+        }
+    }
+}
+
+/// The unit normals of the `wanted` faces.
+fn units(obj: &Obj, wanted: &[bool]) -> Vec<DVec3> {
+    let normal = |points: &mut Vec<DVec3>, face: usize| {
         if !wanted[face] {
+            return DVec3::ZERO;
+        }
+        points.clear();
+        points.extend(obj.corners[obj.face(face)].iter().map(|c| obj.positions[*c as usize]));
+        unit(vector_area(points))
+    };
+    (0..obj.len()).into_par_iter().with_min_len(1 << 12).map_init(Vec::new, normal).collect()
+}
+
+/// The corners around one point; keeps its memory from one to the next.
+#[derive(Debug, Default)]
+struct Ring {
+    /// Links between corners that share a normal.
+    parent: Vec<u32>,
+    /// The first corner of each smoothing group, or at each edge from the point.
+    seen: Vec<(u64, u32)>,
+    /// Where there are too many to go through them.
+    crowd: NumberMap<u32>,
+    /// The numbers of the normals, at the roots of the links.
+    numbers: Vec<u32>,
+    sums: Vec<DVec3>,
+}
+
+/// The longest list that is searched one by one.
+const CROWD: usize = 24;
+
+impl Ring {
+    /// Makes the normals of the `corners` that lack one, puts them after `normals`, and their numbers in place of the faces.
+    fn complete(&mut self, sight: &Sight, corners: &mut [[u32; 2]], normals: &mut Vec<Vec3>) {
+        let lacks = |corner: u32| sight.obj.lacks_normal(corner as usize);
+        if !corners.iter().any(|[_, corner]| lacks(*corner)) {
+            for [number, _] in corners {
+                *number = NONE;
+            }
             return;
         }
-        let range = obj.face(face);
-        for corner in range.clone() {
-            missing[corner] = smoothing != Smoothing::Off && lacks_normal(obj, corner);
-        }
-        match smoothing {
-            Smoothing::Off => {}
-            Smoothing::Group(group) => {
-                for corner in range {
-                    let point = first[obj.corners[corner] as usize];
-                    let key = u64::from(point) << 32 | u64::from(group);
-                    let other = *groups.entry(key).or_insert(corner as u32);
-                    links.join(other, corner as u32);
-                }
-            }
-            Smoothing::Unsaid => {
-                let count = range.len();
-                for k in 0..count {
-                    let (c, d) = (range.start + k, range.start + (k + 1) % count);
-                    let point = |c: usize| first[obj.corners[c] as usize];
-                    let (p, q) = (point(c), point(d));
-                    let (from, to) = if p < q { (c, d) } else { (d, c) };
-                    let key = [p.min(q), p.max(q)];
-                    let here = [face as u32, from as u32, to as u32];
-                    let mut slot = mix(u64::from(key[0]) << 32 | u64::from(key[1])) as usize & mask;
-                    let there = loop {
-                        let [other, start] = edges[slot];
-                        if other == NONE {
-                            edges[slot] = [face as u32, k as u32];
-                            break here;
-                        }
-                        let range = obj.face(other as usize);
-                        let count = range.len();
-                        let (c, d) = (
-                            range.start + start as usize,
-                            range.start + (start as usize + 1) % count,
-                        );
-                        let (p, q) = (point(c), point(d));
-                        if [p.min(q), p.max(q)] == key {
-                            let (from, to) = if p < q { (c, d) } else { (d, c) };
-                            break [other, from as u32, to as u32];
-                        }
-                        slot = (slot + 1) & mask;
-                    };
-                    let [a, b] = [here, there].map(|edge| areas[edge[0] as usize]);
-                    if unit(a).dot(unit(b)) > crease {
-                        links.join(here[1], there[1]);
-                        links.join(here[2], there[2]);
-                    }
-                }
+        self.link(sight, corners);
+        self.numbers.clear();
+        self.numbers.resize(corners.len(), NONE);
+        self.sums.clear();
+        for (k, [_, corner]) in corners.iter().enumerate() {
+            let root = self.find(k as u32) as usize;
+            if lacks(*corner) && self.numbers[root] == NONE {
+                self.numbers[root] = self.sums.len() as u32;
+                self.sums.push(DVec3::ZERO);
             }
         }
-    });
-    let mut number_of = vec![NONE; obj.corners.len()];
-    let mut count = 0;
-    for (corner, _) in missing.iter().enumerate().filter(|(_, missing)| **missing) {
-        let root = links.find(corner as u32) as usize;
-        if number_of[root] == NONE {
-            number_of[root] = count;
-            count += 1;
+        let base = normals.len() as u32;
+        for (k, entry) in corners.iter_mut().enumerate() {
+            let [face, corner] = *entry;
+            let root = self.find(k as u32) as usize;
+            let number = self.numbers[root];
+            entry[0] = if lacks(corner) { base + number } else { NONE };
+            if number != NONE {
+                self.sums[number as usize] +=
+                    sight.units[face as usize] * sight.angle(face as usize, corner as usize);
+            }
         }
+        normals.extend(self.sums.iter().map(|n| n.normalize_or_zero().as_vec3()));
     }
-    let sums = sums(obj, areas, wanted, &mut links, &number_of, count as usize);
-    let base = obj.normals.len() as u32;
-    obj.normals.extend(sums.iter().map(|n| n.normalize_or_zero().as_vec3()));
-    for (corner, _) in missing.iter().enumerate().filter(|(_, missing)| **missing) {
-        obj.corner_normals[corner] = base + number_of[links.find(corner as u32) as usize];
-    }
-}
 
-fn lacks_normal(obj: &Obj, corner: usize) -> bool {
-    match obj.corner_normals[corner] {
-        NONE => true,
-        normal => obj.normals[normal as usize] == Vec3::ZERO,
-    }
-}
-
-/// The sum of the faces' unit normals by angle, for each of `count` sets of linked corners.
-fn sums(
-    obj: &Obj,
-    areas: &[DVec3],
-    wanted: &[bool],
-    links: &mut Links,
-    number_of: &[u32],
-    count: usize,
-) -> Vec<DVec3> {
-    let mut sums = vec![DVec3::ZERO; count];
-    for (face, area) in areas.iter().enumerate() {
-        if !wanted[face] {
-            continue;
-        }
-        let range = obj.face(face);
-        let normal = unit(*area);
-        let count = range.len();
-        for k in 0..count {
-            let number = number_of[links.find((range.start + k) as u32) as usize];
-            if number == NONE {
+    /// Links the corners that share a normal.
+    fn link(&mut self, sight: &Sight, corners: &[[u32; 2]]) {
+        let Sight { obj, first, units, crease } = *sight;
+        self.parent.clear();
+        self.parent.extend(0..corners.len() as u32);
+        self.seen.clear();
+        self.crowd.clear();
+        for (&[face, corner], here) in corners.iter().zip(0_u32..) {
+            let (face, corner) = (face as usize, corner as usize);
+            if let Smoothing::Group(group) = obj.smoothing_of(obj.section_at(face)) {
+                let there = self.first_with(u64::from(group), here);
+                self.join(there, here);
                 continue;
             }
-            let at = |k: usize| obj.positions[obj.corners[range.start + k % count] as usize];
-            let (p, back, on) = (at(k), at(k + count - 1), at(k + 1));
-            let (u, v) = (unit(back - p), unit(on - p));
-            sums[number as usize] += normal * u.cross(v).length().atan2(u.dot(v));
+            let point = |corner: usize| first[obj.corners[corner] as usize];
+            for other in neighbors(obj, face, corner) {
+                if point(other) == point(corner) {
+                    continue;
+                }
+                let there = self.first_with(u64::from(point(other)), here);
+                let other_face = corners[there as usize][0] as usize;
+                if units[face].dot(units[other_face]) > crease {
+                    self.join(there, here);
+                }
+            }
         }
     }
-    sums
+
+    /// The first corner that came with `key`: `here`, if there was none.
+    fn first_with(&mut self, key: u64, here: u32) -> u32 {
+        if let Some((_, there)) = self.seen.iter().find(|(seen, _)| *seen == key) {
+            return *there;
+        }
+        if self.seen.len() < CROWD {
+            self.seen.push((key, here));
+            return here;
+        }
+        *self.crowd.entry(key).or_insert(here)
+    }
+
+    fn find(&mut self, mut x: u32) -> u32 {
+        while self.parent[x as usize] != x {
+            let grandparent = self.parent[self.parent[x as usize] as usize];
+            self.parent[x as usize] = grandparent;
+            x = grandparent;
+        }
+        x
+    }
+
+    fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.find(a), self.find(b));
+        self.parent[a.max(b) as usize] = a.min(b);
+    }
+}
+
+impl Sight<'_> {
+    /// The angle of a face at one of its corners, in radians.
+    fn angle(&self, face: usize, corner: usize) -> f64 {
+        let at = |corner: usize| self.obj.positions[self.obj.corners[corner] as usize];
+        let [back, on] = neighbors(self.obj, face, corner).map(at);
+        let (u, v) = (unit(back - at(corner)), unit(on - at(corner)));
+        u.cross(v).length().atan2(u.dot(v))
+    }
+}
+
+/// The corners before and after one of a face.
+fn neighbors(obj: &Obj, face: usize, corner: usize) -> [usize; 2] {
+    let Range { start, end } = obj.face(face);
+    [
+        if corner == start { end - 1 } else { corner - 1 },
+        if corner + 1 == end { start } else { corner + 1 },
+    ]
 }
 
 fn unit(v: DVec3) -> DVec3 {
     scale::normalized(v).0.normalize_or_zero()
-}
-
-/// Calls `visit` with every face and its smoothing.
-pub(super) fn for_each_face(obj: &Obj, mut visit: impl FnMut(&Obj, usize, Smoothing)) {
-    for (k, section) in obj.sections.iter().enumerate() {
-        let end = obj.sections.get(k + 1).map_or(obj.len(), |next| next.first_face as usize);
-        for face in section.first_face as usize..end {
-            // The format's default holds only where a file knows of smoothing at all.
-            let is_default = section.smoothing == Smoothing::Unsaid && obj.tallies.smoothing_said;
-            visit(obj, face, if is_default { Smoothing::Off } else { section.smoothing });
-        }
-    }
 }

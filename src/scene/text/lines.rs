@@ -13,7 +13,17 @@ pub struct Lines<'a> {
 impl<'a> Lines<'a> {
     /// The lines of `text`.
     pub fn new(text: &'a [u8]) -> Self {
-        Self { rest: text, number: 0, joined: Vec::new() }
+        Self::after(0, text)
+    }
+
+    /// The lines of `text`, before which the file has `number` lines.
+    pub fn after(number: u32, text: &'a [u8]) -> Self {
+        Self { rest: text, number, joined: Vec::new() }
+    }
+
+    /// How many lines of the file there were so far, each part of a joined one counted.
+    pub fn count(&self) -> u32 {
+        self.number
     }
 
     /// The next line and its number (that of its first part), without its end.
@@ -59,6 +69,23 @@ impl<'a> Lines<'a> {
     }
 }
 
+/// Cuts `text` after ends of lines, none of which goes on in the next, into parts of `least` bytes and a little more.
+pub fn parts(text: &[u8], least: usize) -> Vec<&[u8]> {
+    let (mut parts, mut rest) = (Vec::new(), text);
+    while rest.len() > least {
+        // Whether a line goes on is told by its own end alone, so any line may be the first to look at.
+        let from = memchr::memrchr2(b'\n', b'\r', &rest[..least]).map_or(0, |end| end + 1);
+        let is_between = from > 0 && rest[from - 1..].starts_with(b"\r\n");
+        let mut lines = Lines::new(&rest[from + usize::from(is_between)..]);
+        while lines.next_line().is_some() && lines.rest.len() + least > rest.len() {}
+        let (part, others) = rest.split_at(rest.len() - lines.rest.len());
+        parts.push(part);
+        rest = others;
+    }
+    parts.push(rest);
+    parts
+}
+
 /// How many lines end in `text`.
 pub fn line_ends(text: &[u8]) -> u32 {
     let feeds = memchr::memchr_iter(b'\n', text).count();
@@ -98,6 +125,30 @@ mod tests {
             assert_eq!(lines(text), expected, "{text:?}");
         }
         assert!(lines("").is_empty());
+    }
+
+    /// Oracle: the lines of the whole text.
+    #[test]
+    fn parts_have_the_lines_of_the_whole() {
+        for text in [
+            "a\r\nb \\\r\n c\r\n\r\nd",
+            "a\\\nb\\\n\\\nc\nd\n\n\ne",
+            "a\r\rb\\\r\rc\n\rd\\",
+            "long line",
+            "",
+        ] {
+            for least in 1..text.len().max(2) {
+                let (mut found, mut number) = (Vec::new(), 0);
+                for part in parts(text.as_bytes(), least) {
+                    let mut lines = Lines::after(number, part);
+                    while let Some((number, line)) = lines.next_line() {
+                        found.push((number, String::from_utf8_lossy(line).into_owned()));
+                    }
+                    number = lines.count();
+                }
+                assert_eq!(found, lines(text), "{text:?} in parts of {least}");
+            }
+        }
     }
 
     #[test]

@@ -1,135 +1,56 @@
-//! The statements of an OBJ file, checked and put into flat lists; nothing is repaired yet.
+//! The statements of a part of an OBJ file.
 
 use std::collections::HashMap;
 
 use glam::{DVec3, Vec2, Vec3};
 
-use super::error::ModelError;
+use super::{
+    lists::{NONE, Obj, Smoothing},
+    parts::Counts,
+};
 use crate::scene::text::{Lines, Tokens, float, integer, name_of};
-
-/// No index, for a corner without surface coordinates or normal, and no material.
-pub(super) const NONE: u32 = u32::MAX;
 
 /// The most corners of one polygon; cutting a larger one into triangles could take minutes.
 const MOST_CORNERS: usize = 10_000;
 
-/// How faces are smoothed from here on, where they have no normals.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Smoothing {
-    /// No `s` was seen.
-    Unsaid,
-    /// `s off`.
-    Off,
-    /// `s N`.
-    Group(u32),
-}
-
-/// What holds from a face on.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Section {
+/// What holds from a face on, as far as its part of the file says it; what it does not say goes on from the part before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Said {
+    /// The face, counted from the first of the part.
     pub(super) first_face: u32,
-    /// A place in [`Obj::materials`], or [`NONE`].
-    pub(super) material: u32,
-    pub(super) smoothing: Smoothing,
+    /// A place in the materials of the part.
+    pub(super) material: Option<u32>,
+    pub(super) smoothing: Option<Smoothing>,
 }
 
-/// The contents of an OBJ file.
+/// Reads a part of a file: whole statements, which may use what parts before it define.
 #[derive(Debug, Default)]
-pub(super) struct Obj {
-    pub(super) positions: Vec<DVec3>,
-    /// Empty, or a colour for every position.
-    pub(super) colors: Vec<Vec3>,
-    pub(super) texcoords: Vec<Vec2>,
-    /// Unit vectors; zero where the file has none that can be used.
-    pub(super) normals: Vec<Vec3>,
-    /// The end of every face in the lists of corners.
-    pub(super) ends: Vec<u32>,
-    /// The line of every face.
-    pub(super) lines: Vec<u32>,
-    pub(super) corners: Vec<u32>,
-    /// Empty, or as long as the corners.
-    pub(super) corner_texcoords: Vec<u32>,
-    /// Empty, or as long as the corners.
-    pub(super) corner_normals: Vec<u32>,
-    pub(super) sections: Vec<Section>,
-    /// The materials used, and the line of the first use.
-    pub(super) materials: Vec<(String, u32)>,
-    /// The material libraries, and their lines.
-    pub(super) libraries: Vec<(String, u32)>,
-    pub(super) tallies: Tallies,
-}
-
-/// How often, and in which line first.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Tally {
-    /// How often.
-    pub(super) count: u32,
-    /// The line of the first, from 1.
-    pub(super) line: u32,
-}
-
-impl Tally {
-    pub(super) fn add(&mut self, line: u32) {
-        if self.count == 0 {
-            self.line = line;
-        }
-        self.count = self.count.saturating_add(1);
-    }
-}
-
-/// What was counted on the way.
-#[derive(Debug, Default)]
-pub(super) struct Tallies {
-    pub(super) objects: Tally,
-    pub(super) groups: Tally,
-    /// Points and polylines, which a ray does not meet.
-    pub(super) lines: Tally,
-    pub(super) free_form: Tally,
-    pub(super) bad_normals: Tally,
-    pub(super) bad_texcoords: Tally,
-    /// Faces of fewer than three corners.
-    pub(super) short_faces: Tally,
-    pub(super) unknown: Tally,
-    pub(super) unknown_word: String,
-    pub(super) smoothing_said: bool,
-}
-
-impl Obj {
-    /// The number of faces.
-    pub(super) fn len(&self) -> usize {
-        self.ends.len()
-    }
-
-    /// The places of a face in the lists of corners.
-    pub(super) fn face(&self, face: usize) -> std::ops::Range<usize> {
-        let start = if face == 0 { 0 } else { self.ends[face - 1] };
-        start as usize..self.ends[face] as usize
-    }
-
-    /// Reads the statements of `text`; `path` is for messages.
-    pub(super) fn parse(path: &str, text: &[u8]) -> Result<Self, ModelError> {
-        let mut reader = Reader::default();
-        let mut lines = Lines::new(text);
-        while let Some((number, line)) = lines.next_line() {
-            reader.statement(number, line).map_err(|reason| ModelError::Line {
-                path: path.to_owned(),
-                line: number,
-                reason,
-            })?;
-        }
-        reader.finish(path)
-    }
-}
-
-#[derive(Debug, Default)]
-struct Reader {
-    obj: Obj,
+pub(super) struct Part {
+    /// The contents; faces end within the part's own lists, and there are no sections.
+    pub(super) obj: Obj,
+    /// What was said, face by face; the last of it holds at the end of the part.
+    pub(super) said: Vec<Said>,
+    before: Counts,
     material_numbers: HashMap<String, u32>,
     material: Option<u32>,
     smoothing: Option<Smoothing>,
 }
 
-impl Reader {
+impl Part {
+    /// Reads the statements of `text`, before which the file holds `before`.
+    ///
+    /// # Errors
+    /// The line of the first that cannot be right, and why.
+    pub(super) fn read(text: &[u8], before: Counts) -> Result<Self, (u32, String)> {
+        let mut part = Self { before, ..Self::default() };
+        let mut lines = Lines::after(before.lines, text);
+        while let Some((number, line)) = lines.next_line() {
+            part.statement(number, line).map_err(|reason| (number, reason))?;
+        }
+        part.note_said();
+        Ok(part)
+    }
+
     #[inline]
     fn statement(&mut self, number: u32, line: &[u8]) -> Result<(), String> {
         let mut tokens = Tokens::new(line);
@@ -233,26 +154,18 @@ impl Reader {
             self.obj.corner_normals.truncate(start);
             return Ok(());
         }
-        let end =
-            u32::try_from(self.obj.corners.len()).map_err(|_| "too many corners".to_owned())?;
-        self.begin_section();
-        self.obj.ends.push(end);
+        self.note_said();
+        self.obj.ends.push(self.obj.corners.len() as u32);
         self.obj.lines.push(number);
         Ok(())
     }
 
     /// Notes the material and smoothing of the next face, if they are not those of the last.
-    fn begin_section(&mut self) {
-        let section = Section {
-            first_face: self.obj.ends.len() as u32,
-            material: self.material.unwrap_or(NONE),
-            smoothing: self.smoothing.unwrap_or(Smoothing::Unsaid),
-        };
-        let is_same = self.obj.sections.last().is_some_and(|last| {
-            (last.material, last.smoothing) == (section.material, section.smoothing)
-        });
-        if !is_same {
-            self.obj.sections.push(section);
+    fn note_said(&mut self) {
+        let first_face = self.obj.ends.len() as u32;
+        let said = Said { first_face, material: self.material, smoothing: self.smoothing };
+        if self.said.last().is_none_or(|last| Said { first_face, ..*last } != said) {
+            self.said.push(said);
         }
     }
 
@@ -268,9 +181,10 @@ impl Reader {
                 }
             }
         };
-        let position = index(obj.positions.len(), "position")?;
-        let texcoord = index(obj.texcoords.len(), "texture coordinate")?;
-        let normal = index(obj.normals.len(), "normal")?;
+        let Counts { positions, texcoords, normals, .. } = self.before;
+        let position = index(positions + obj.positions.len(), "position")?;
+        let texcoord = index(texcoords + obj.texcoords.len(), "texture coordinate")?;
+        let normal = index(normals + obj.normals.len(), "normal")?;
         if position == NONE || parts.next().is_some() {
             return Err(format!(
                 "corner `{}` is not of the form v, v/vt, v//vn or v/vt/vn",
@@ -316,30 +230,6 @@ impl Reader {
             self.obj.tallies.unknown_word = shown(keyword);
         }
         self.obj.tallies.unknown.add(line);
-    }
-
-    fn finish(self, path: &str) -> Result<Obj, ModelError> {
-        let mut obj = self.obj;
-        let corners = obj.corners.len();
-        for list in [&mut obj.corner_texcoords, &mut obj.corner_normals] {
-            if !list.is_empty() {
-                list.resize(corners, NONE);
-            }
-        }
-        if !obj.colors.is_empty() {
-            obj.colors.resize(obj.positions.len(), Vec3::ONE);
-        }
-        if obj.ends.is_empty() {
-            let Tallies { unknown, unknown_word, .. } = &obj.tallies;
-            return Err(ModelError::NoFace {
-                path: path.to_owned(),
-                hint: match unknown.count {
-                    0 => String::new(),
-                    _ => format!(" (line {}: unknown statement `{unknown_word}`)", unknown.line),
-                },
-            });
-        }
-        Ok(obj)
     }
 }
 
