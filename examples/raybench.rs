@@ -1,7 +1,7 @@
 //! The ray-query benchmark of docs/stress.md, in the words of `benches/peers/raybench.cpp`: a line of CSV a measurement.
 //!
 //! `cargo run --release --example raybench -- spheres:1e5 [REPEATS]`, or `icos:1000:3`, or `obj:FILE`. One thread, except
-//! for the build; the best of the repeats.
+//! for the build; the best of the repeats. With `--features leaf-study` it also counts the tests that a ray takes.
 #![allow(clippy::print_stdout, reason = "its output is a table")]
 
 #[path = "../benches/stress/mod.rs"]
@@ -49,6 +49,8 @@ fn main() {
         let seconds = runs.iter().map(|run| run.0).fold(f64::INFINITY, f64::min);
         let (hits, sum) = runs[0].1;
         print(measure, rays as f64 / seconds * 1e-6, "Mrays/s", hits, sum);
+        #[cfg(feature = "leaf-study")]
+        print_counts(measure, rays, query);
     };
     let count = |hits: &mut dyn Iterator<Item = Option<Hit>>| {
         hits.flatten().fold((0, 0.0), |(count, sum), hit| (count + 1, sum + hit.t))
@@ -73,6 +75,19 @@ fn main() {
     best(shadow.len(), &|| (shadow.iter().filter(blocked).count(), 0.0), "shadow_occluded1");
     let random = stress::random(&bounds, 1_000_000);
     best(random.len(), &|| nearest(&random), "random_intersect1");
+}
+
+/// The tests that a ray takes.
+#[cfg(feature = "leaf-study")]
+fn print_counts(measure: &str, rays: usize, query: &dyn Fn() -> (usize, f64)) {
+    use whitted::accel::study::{COUNTED, Leaves, set_leaves, take_counts};
+    set_leaves(Leaves::Counted);
+    take_counts();
+    query();
+    set_leaves(Leaves::Robust);
+    for (name, count) in COUNTED.iter().zip(take_counts()).filter(|(_, count)| *count > 0) {
+        println!("{measure}: {:.3} x {name}", count as f64 / rays as f64);
+    }
 }
 
 fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {

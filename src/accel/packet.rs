@@ -140,6 +140,8 @@ impl Packet {
         };
         loop {
             if let Content::Node(k) = visit.child.content() {
+                #[cfg(feature = "leaf-study")]
+                super::study::count_beam();
                 let (mut met, enter) = self.beam.test(simd, &tree.nodes[k], limit);
                 let enter = simd.store(enter).0;
                 let base = len;
@@ -163,6 +165,8 @@ impl Packet {
                 let content = visit.child.content();
                 let mut changed = false;
                 for k in 0..self.count.div_ceil(LANES) {
+                    #[cfg(feature = "leaf-study")]
+                    super::study::count_eight();
                     let mut met = self.eights[k].meet(simd, node, visit.slot as usize);
                     changed |= met != 0;
                     while met != 0 {
