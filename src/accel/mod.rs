@@ -20,6 +20,7 @@ mod simd;
 mod simd_x86;
 #[cfg(feature = "leaf-study")]
 pub mod study;
+mod target;
 #[cfg(test)]
 mod tests;
 mod tree;
@@ -228,13 +229,6 @@ impl Accel {
             return crossings;
         }
         simd.crossings(&self.shapes[place], ray, self.numbers[place])
-    }
-
-    /// The place of the primitive that `ray` leaves, if it does.
-    #[inline(always)]
-    fn place_left(&self, ray: &Ray) -> u32 {
-        let number = ray.from.map_or(usize::MAX, |from| from.primitive as usize);
-        self.places.get(number).copied().unwrap_or(u32::MAX)
     }
 
     /// The places of the primitives that are not in the tree.

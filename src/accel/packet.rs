@@ -16,6 +16,7 @@ use super::{
     node::{Child, Content, Node},
     query::{Best, Search},
     simd::{Kernel, Simd},
+    target::Left,
     tree::Tree,
     walk::{MAX_DEPTH, Visitor},
 };
@@ -386,7 +387,7 @@ where
     fn leaf(&mut self, simd: S, ray: usize, leaf: Content) -> f32 {
         let tree_ray = &self.tree_rays[ray];
         let (leaf_ray, limit) = (LeafRay::new(tree_ray, 1.0), tree_ray.end_above(1.0));
-        let (tree, left) = (self.tree, self.accel.place_left(&self.rays[ray]));
+        let (tree, left) = (self.tree, Left::of(self.accel, &self.rays[ray]));
         let test = self.test(ray);
         let mut search = crossed::Search { test, tree, leaf_ray, left, limit, stopped: false };
         if search.leaf(simd, leaf) {

@@ -4,7 +4,9 @@
 //! `#[inline(always)]`, or the compiler builds them for the baseline and every operation becomes a call; then
 //! `f64::mul_add` in the shapes' own tests is an instruction too, with the same result as the library's function.
 
-use crate::geometry::{Ray, Shape, hit::Crossings};
+use glam::DVec3;
+
+use crate::geometry::{Crossing, Ray, Shape, hit::Crossings, triangle};
 
 /// Which instructions the queries use; the answers do not depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -74,6 +76,15 @@ pub(super) trait Simd: Copy {
     /// [`Shape::crossings_of`], compiled once for these instructions rather than into every kernel.
     fn crossings(self, shape: &Shape, ray: &Ray, primitive: u32) -> Crossings;
 
+    /// [`triangle::crossing`], likewise.
+    fn triangle_crossing(self, corners: &[DVec3; 3], ray: &Ray) -> Crossing;
+
+    /// [`triangle::certain_crossing`], likewise.
+    fn certain_crossing(self, corners: &[DVec3; 3], ray: &Ray) -> Crossing;
+
+    /// Asks for the memory of `x`, which is needed soon.
+    fn prefetch<T>(self, x: &T);
+
     fn splat(self, x: f32) -> Self::F;
     fn load(self, x: &[f32; 8]) -> Self::F;
     fn store(self, x: Self::F) -> Lanes;
@@ -125,6 +136,27 @@ impl Simd for Portable {
         }
         compiled(shape, ray, primitive)
     }
+
+    #[inline(always)]
+    fn triangle_crossing(self, corners: &[DVec3; 3], ray: &Ray) -> Crossing {
+        #[inline(never)]
+        fn compiled(corners: &[DVec3; 3], ray: &Ray) -> Crossing {
+            triangle::crossing(corners, ray)
+        }
+        compiled(corners, ray)
+    }
+
+    #[inline(always)]
+    fn certain_crossing(self, corners: &[DVec3; 3], ray: &Ray) -> Crossing {
+        #[inline(never)]
+        fn compiled(corners: &[DVec3; 3], ray: &Ray) -> Crossing {
+            triangle::certain_crossing(corners, ray)
+        }
+        compiled(corners, ray)
+    }
+
+    #[inline(always)]
+    fn prefetch<T>(self, _: &T) {}
 
     #[inline(always)]
     fn splat(self, x: f32) -> Lanes {

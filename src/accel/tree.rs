@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{
@@ -22,6 +23,8 @@ pub(super) struct Tree {
     pub(super) nodes: Vec<Node>,
     pub(super) spheres: Vec<Spheres>,
     pub(super) triangles: Vec<Triangles>,
+    /// The corners of the triangles, exactly, in the order of the leaves.
+    pub(super) corners: Vec<[DVec3; 3]>,
 }
 
 impl Tree {
@@ -42,12 +45,20 @@ impl Tree {
         drop(boxes);
         let order: Vec<u32> = wide.order.iter().map(|k| inside[*k as usize]).collect();
         let leaves = Leaves { shapes, order: &order, frame: &frame };
+        let mut starts = vec![0];
+        starts.extend(wide.triangle_runs.iter().scan(0, |end, run| {
+            *end += run.count;
+            Some(*end)
+        }));
+        let triangles = wide.triangle_runs.par_iter().zip(&starts);
+        let of_triangles = wide.triangle_runs.par_iter().map(|run| leaves.shapes_of(*run));
         let tree = Self {
             frame,
             root: wide.root,
             nodes: wide.nodes,
             spheres: wide.sphere_runs.par_iter().map(|run| leaves.spheres(*run)).collect(),
-            triangles: wide.triangle_runs.par_iter().map(|run| leaves.triangles(*run)).collect(),
+            triangles: triangles.map(|(run, start)| leaves.triangles(*run, *start)).collect(),
+            corners: of_triangles.flat_map_iter(|shapes| shapes.map(corners_of)).collect(),
         };
         Some((tree, order))
     }
@@ -89,16 +100,21 @@ impl Leaves<'_> {
         block
     }
 
-    fn triangles(&self, run: Run) -> Triangles {
-        let mut block = Triangles::new(run.first);
+    fn triangles(&self, run: Run, corners: u32) -> Triangles {
+        let mut block = Triangles::new(run.first, corners);
         for shape in self.shapes_of(run) {
-            let corners = match shape {
-                Shape::Triangle(t) => t.vertices(),
-                Shape::Face(f) => f.vertices(),
-                _ => continue,
-            };
-            block.push(corners.map(|v| self.frame.point(v)), self.frame.coarseness());
+            let corners = corners_of(shape).map(|v| self.frame.point(v));
+            block.push(corners, self.frame.coarseness());
         }
         block
+    }
+}
+
+/// The corners of a triangle.
+fn corners_of(shape: &Shape) -> [DVec3; 3] {
+    match shape {
+        Shape::Triangle(t) => t.vertices(),
+        Shape::Face(f) => f.vertices(),
+        _ => unreachable!("blocks of triangles hold nothing else"),
     }
 }

@@ -87,8 +87,13 @@ pub(super) fn crossing_of(
     if left == right {
         return Crossing::NONE; // on different sides of two edges, or the outline is seen edge-on
     }
-    let normal = normal();
-    let t = dot(normal, vertices[0] - ray.origin) / dot(normal, ray.dir);
+    plane_crossing(vertices[0], normal(), ray)
+}
+
+/// The crossing of the line of `ray` with the plane through `vertex` square to `normal`.
+#[inline(always)]
+pub(super) fn plane_crossing(vertex: DVec3, normal: DVec3, ray: &Ray) -> Crossing {
+    let t = dot(normal, vertex - ray.origin) / dot(normal, ray.dir);
     if t.is_finite() { Crossing::at(t) } else { Crossing::NONE }
 }
 

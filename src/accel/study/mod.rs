@@ -87,6 +87,12 @@ fn count_test(shape: &Shape) {
     });
 }
 
+/// Counts the test of a triangle in double precision.
+#[inline(always)]
+pub(super) fn count_triangle() {
+    count(4);
+}
+
 /// Counts the test of a leaf in single precision.
 #[inline(always)]
 fn count_leaf(leaf: Content) {
