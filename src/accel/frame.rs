@@ -154,6 +154,10 @@ fn arrive(origin: DVec3, dir: DVec3) -> Option<(DVec3, f64)> {
 }
 
 impl TreeRay {
+    /// In place of a ray that meets nothing.
+    pub(super) const NOWHERE: Self =
+        Self { origin: [0.0; 3], dir: [1.0; 3], rate: 1.0, arrival: 0.0, slack: 0.0 };
+
     /// The world's parameter `t` here, rounded up and with room for the error of the arrival.
     #[inline(always)]
     pub(super) fn end_above(&self, t: f64) -> f32 {

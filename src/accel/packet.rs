@@ -32,6 +32,9 @@ const FEWEST: usize = 8;
 /// A wider beam, at distance 1 in units of half the scene, meets too much that no ray of it does.
 const WIDEST: f32 = 0.25;
 
+/// Room for the roundings of a ray's start and end along the beam's axis.
+const START_SLACK: f64 = 1.0 / (1 << 20) as f64;
+
 /// The stack of the walk: each node on the way down leaves at most seven of its children to be visited later.
 const STACK: usize = MAX_DEPTH * 7 + 1;
 
@@ -106,11 +109,7 @@ impl Packet {
         point: DVec3,
         dirs: impl Iterator<Item = DVec3> + Clone,
     ) -> Option<Self> {
-        let point = tree.frame.point(point);
-        if !(point.length_squared() <= 4.0) {
-            return None;
-        }
-        let beam = Beam::around(point, dirs)?;
+        let beam = Beam::around(tree.frame.point(point), dirs)?;
         if beam.spread() > WIDEST {
             return None;
         }
@@ -134,7 +133,9 @@ impl Packet {
             content => {
                 // A tree of one leaf has no box to be tested.
                 for ray in 0..self.count {
-                    searches.leaf(simd, ray, content);
+                    if self.eights[ray / LANES].limit[ray % LANES] >= 0.0 {
+                        searches.leaf(simd, ray, content);
+                    }
                 }
                 return;
             }
@@ -210,12 +211,20 @@ impl Kernel for NearestPacket<'_> {
         let Some(tree) = accel.packet_tree(rays) else { return false };
         let (mut searches, mut tree_rays) = (Vec::with_capacity(RAYS), Vec::with_capacity(RAYS));
         for ray in rays {
-            let Entry::Ray(tree_ray) = tree.frame.enter(ray) else { return false };
+            let (tree_ray, meets) = match tree.frame.enter(ray) {
+                Entry::Ray(tree_ray) => (tree_ray, true),
+                Entry::Miss => (TreeRay::NOWHERE, false),
+                Entry::Extreme => return false,
+            };
             let mut best = Best::before(f64::INFINITY);
             for place in accel.outside() {
                 best.test(simd, accel, ray, place);
             }
-            searches.push(Search::new(accel, tree, ray, tree_ray, best));
+            let mut search = Search::new(accel, tree, ray, tree_ray, best);
+            if !meets {
+                search.limit = -1.0;
+            }
+            searches.push(search);
             tree_rays.push(tree_ray);
         }
         let limits = searches.iter().map(|search| search.limit);
@@ -223,13 +232,15 @@ impl Kernel for NearestPacket<'_> {
         let Some(mut packet) = Packet::new(tree, &tree_rays, limits, rays[0].origin, dirs) else {
             return false;
         };
-        let (mut rates, mut ends) = ([0.0; RAYS], [f32::NEG_INFINITY; RAYS]);
+        let vector = |v: [f32; 3]| DVec3::from_array(v.map(f64::from));
+        let (mut rates, mut starts, mut ends) =
+            ([0.0; RAYS], [0.0; RAYS], [f32::NEG_INFINITY; RAYS]);
         for (k, ray) in tree_rays.iter().enumerate() {
-            let dir = DVec3::from_array(ray.dir.map(f64::from));
-            rates[k] = above(packet.beam.along(dir)).next_up();
-            ends[k] = (searches[k].limit * rates[k]).next_up();
+            rates[k] = above(packet.beam.along(vector(ray.dir))).next_up();
+            starts[k] = above(packet.beam.depth(vector(ray.origin)) + START_SLACK);
+            ends[k] = end_of(searches[k].limit, rates[k], starts[k]);
         }
-        let mut nearest = Nearest { searches: &mut searches, rates, ends };
+        let mut nearest = Nearest { searches: &mut searches, rates, starts, ends };
         packet.walk(simd, tree, &mut nearest);
         for (hit, search) in hits.iter_mut().zip(searches) {
             *hit = search.finish(simd).hit();
@@ -238,10 +249,18 @@ impl Kernel for NearestPacket<'_> {
     }
 }
 
+/// How far along the beam's axis a ray searches.
+#[inline(always)]
+fn end_of(limit: f32, rate: f32, start: f32) -> f32 {
+    if limit >= 0.0 { limit * rate + start } else { f32::NEG_INFINITY }
+}
+
 struct Nearest<'s, 'a> {
     searches: &'s mut [Search<'a>],
     /// How far each ray goes along the beam's axis in one unit of its parameter, rounded up.
     rates: [f32; RAYS],
+    /// Where along it each ray starts, rounded up.
+    starts: [f32; RAYS],
     /// How far along the axis each still searches.
     ends: [f32; RAYS],
 }
@@ -251,7 +270,7 @@ impl<S: Simd> Searches<S> for Nearest<'_, '_> {
     fn leaf(&mut self, simd: S, ray: usize, leaf: Content) -> f32 {
         let search = &mut self.searches[ray];
         search.leaf(simd, leaf);
-        self.ends[ray] = (search.limit * self.rates[ray]).next_up();
+        self.ends[ray] = end_of(search.limit, self.rates[ray], self.starts[ray]);
         search.limit
     }
 
@@ -299,7 +318,8 @@ where
         };
         // Seen from the light, the furthest start of a ray, rounded up with room for the error of either end.
         let length = |dir: DVec3| packet.beam.along(tree.frame.vector(dir));
-        let end = above(dirs.map(length).fold(0.0, f64::max) * (1.0 + 1e-6)).next_up();
+        let furthest = dirs.map(length).fold(0.0, f64::max);
+        let end = above(furthest * (1.0 + 1e-12) - packet.beam.lead + 1e-6).next_up();
         let mut blocks = Blocks {
             accel,
             tree,
