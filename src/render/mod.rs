@@ -26,7 +26,6 @@ use crate::{
     camera::View,
     color::Rgb,
     film::{Film, Tile},
-    geometry::Ray,
     scene::Scene,
     trace::{self, BATCH, Tracer},
 };
@@ -166,7 +165,7 @@ impl Picture {
 /// The part `part` of a picture `width` pixels wide, of whatever `new_sampler`'s samplers see; each worker thread has its own.
 ///
 /// Every pixel depends on its place in the whole picture and on what is seen within a pixel's width around it, never on `part`.
-pub fn picture<S: Sampler>(
+pub fn picture<S: Sampler + Send>(
     part: &Tile,
     width: u32,
     aa: AntiAliasing,
@@ -243,7 +242,6 @@ pub fn render(
     let new_sampler = || Worker {
         tracer: Tracer::new(scene, depth),
         view,
-        rays: Vec::new(),
         traced: Vec::new(),
         thin: thin.as_ref(),
         counts: &rays,
@@ -268,7 +266,6 @@ pub fn render(
 struct Worker<'a> {
     tracer: Tracer<'a>,
     view: View,
-    rays: Vec<Ray>,
     traced: Vec<trace::Sample>,
     /// The least samples of pixels with something thin, if there are any.
     thin: Option<&'a Plane<u32>>,
@@ -286,9 +283,8 @@ impl Sampler for Worker<'_> {
 
     fn sample(&mut self, places: &[DVec2], samples: &mut Vec<Sample>) {
         for some in places.chunks(BATCH) {
-            self.rays.clear();
-            self.rays.extend(some.iter().map(|place| self.view.ray(*place)));
-            self.tracer.trace(&self.rays, &mut self.traced);
+            let dirs = some.iter().map(|place| self.view.direction(*place));
+            self.tracer.trace(self.view.eye(), dirs, &mut self.traced);
             samples.extend(self.traced.iter().map(|traced| Sample {
                 // A NaN, which no valid scene has, would be black.
                 color: traced.color.max(Rgb::ZERO).min(Rgb::ONE),
