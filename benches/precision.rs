@@ -39,7 +39,7 @@ use forms::{Form, Primitive};
 use frames::Frame;
 use score::{Row, Score};
 use timing::Times;
-use whitted::accel::Isa;
+use whitted::accel::{Isa, study::COUNTED};
 
 /// Where the table and the plot go.
 const DOCS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs");
@@ -105,16 +105,13 @@ fn print_rows(rows: &[Row]) {
     println!();
 }
 
-const KINDS: [&str; 8] =
-    ["sphere", "cylinder", "cone", "quad", "triangle", "polygon", "8 spheres", "8 triangles"];
-
 fn print_frames(frames: &[Frame], times: &[Times]) {
     println!(
         "Tests per ray, their time in one form or another as a share of the frame, and frames with naive leaves\n"
     );
     for frame in frames {
         let rays = frame.rays as f64;
-        let counts = KINDS.iter().zip(&frame.counts).filter(|(_, n)| **n > 0);
+        let counts = COUNTED.iter().zip(&frame.counts).filter(|(_, n)| **n > 0);
         let counts: Vec<String> =
             counts.map(|(kind, n)| format!("{kind} {:.3}", *n as f64 / rays)).collect();
         let shares = shares(frame, times).map(|share| format!("{:.1} %", 100.0 * share));

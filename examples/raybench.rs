@@ -1,7 +1,7 @@
 //! The ray-query benchmark of docs/stress.md, in the words of `benches/peers/raybench.cpp`: a line of CSV a measurement.
 //!
 //! `cargo run --release --example raybench -- spheres:1e5 [REPEATS]`, or `icos:1000:3`, or `obj:FILE`. One thread, except
-//! for the build; the best of the repeats.
+//! for the build; the best of the repeats. With `--features leaf-study` it also counts the tests that a ray takes.
 #![allow(clippy::print_stdout, reason = "its output is a table")]
 
 #[path = "../benches/stress/mod.rs"]
@@ -32,7 +32,8 @@ fn main() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         let build = || {
             let Geometry { shapes, .. } = make();
-            pool.install(|| timed(|| Accel::build(shapes)).0)
+            let work = || Accel::build(shapes);
+            pool.install(|| if threads == 1 { timed(work).0 } else { timed_by_the_wall(work).0 })
         };
         let best = (0..repeats.min(3)).map(|_| build()).fold(f64::INFINITY, f64::min);
         let plural = if threads == 1 { "" } else { "s" };
@@ -52,6 +53,8 @@ fn main() {
         let seconds = runs.iter().map(|run| run.0).fold(f64::INFINITY, f64::min);
         let (hits, sum) = runs[0].1;
         print(measure, rays as f64 / seconds * 1e-6, "Mrays/s", hits, sum);
+        #[cfg(feature = "leaf-study")]
+        print_counts(measure, rays, query);
     };
     let count = |hits: &mut dyn Iterator<Item = Option<Hit>>| {
         hits.flatten().fold((0, 0.0), |(count, sum), hit| (count + 1, sum + hit.t))
@@ -79,7 +82,33 @@ fn main() {
     best(random.len(), &|| nearest(&random), "random_intersect1");
 }
 
+/// The tests that a ray takes.
+#[cfg(feature = "leaf-study")]
+fn print_counts(measure: &str, rays: usize, query: &dyn Fn() -> (usize, f64)) {
+    use whitted::accel::study::{COUNTED, Leaves, set_leaves, take_counts};
+    set_leaves(Leaves::Counted);
+    take_counts();
+    query();
+    set_leaves(Leaves::Robust);
+    for (name, count) in COUNTED.iter().zip(take_counts()).filter(|(_, count)| *count > 0) {
+        println!("{measure}: {:.3} x {name}", count as f64 / rays as f64);
+    }
+}
+
+/// The seconds of this thread's processor time that `work` takes, which other programs disturb less, where the system tells.
 fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
+    let Some(started) = thread_seconds() else { return timed_by_the_wall(work) };
+    let result = work();
+    (thread_seconds().map_or(f64::NAN, |now| now - started), result)
+}
+
+fn thread_seconds() -> Option<f64> {
+    std::thread::yield_now(); // brings the account up to date
+    let times = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    times.split_whitespace().next()?.parse::<f64>().ok().map(|nanoseconds| nanoseconds * 1e-9)
+}
+
+fn timed_by_the_wall<T>(work: impl FnOnce() -> T) -> (f64, T) {
     let started = Instant::now();
     let result = work();
     (started.elapsed().as_secs_f64(), result)

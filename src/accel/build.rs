@@ -10,10 +10,9 @@
 
 use glam::{Vec3, Vec3A};
 use obvhs::{
-    BvhBuildParams,
     aabb::Aabb,
     bvh2::{node::Bvh2Node, reinsertion::ReinsertionOptimizer},
-    ploc::PlocBuilder,
+    ploc::{PlocBuilder, PlocSearchDistance, SortPrecision},
 };
 use rayon::prelude::*;
 
@@ -129,27 +128,43 @@ fn unit_vector(state: &mut u64) -> Vec3A {
     Vec3A::new(part(0), part(21), part(42))
 }
 
-/// The tree that obvhs builds over `boxes`, with more effort for a scene of `meshes` or of few primitives, as long as it
-/// takes less time than the rays of a small picture.
+/// How much obvhs does for a tree.
+struct Effort {
+    /// How far along the curve each box looks for a partner, after the first passes, which take the next one.
+    reach: PlocSearchDistance,
+    first_passes: usize,
+    /// The share of the nodes that are taken out and put in again where they cost least, in each round.
+    reinsertion: &'static [f32],
+}
+
+impl Effort {
+    /// More for a scene of `meshes` or of few primitives, as long as it takes less time than the rays of a small picture.
+    fn for_boxes(count: usize, meshes: bool) -> Self {
+        let (reach, first_passes, reinsertion): (_, _, &[f32]) = match count {
+            0..=2_000 => (PlocSearchDistance::Medium, 1, &[1.0, 1.0]),
+            2_001..=20_000 => (PlocSearchDistance::Medium, 3, &[0.05, 0.1]),
+            _ if meshes => (PlocSearchDistance::Medium, 3, &[0.02]),
+            _ => (PlocSearchDistance::Minimum, 0, &[0.01]),
+        };
+        Self { reach, first_passes, reinsertion }
+    }
+}
+
+/// The tree that obvhs builds over `boxes`, of a scene of `meshes` or not.
 pub(super) fn binary(boxes: &[Aabb], meshes: bool) -> Binary {
-    let params = if boxes.len() <= 2_000 {
-        BvhBuildParams::very_slow_build()
-    } else if meshes || boxes.len() <= 20_000 {
-        BvhBuildParams::medium_build()
-    } else {
-        BvhBuildParams::very_fast_build()
-    };
+    let Effort { reach, first_passes, reinsertion } = Effort::for_boxes(boxes.len(), meshes);
+    let precision = if boxes.len() <= 2_000 { SortPrecision::U128 } else { SortPrecision::U64 };
     let indices = (0..boxes.len() as u32).collect();
     let mut bvh = PlocBuilder::with_capacity(boxes.len()).build(
-        params.ploc_search_distance,
+        reach,
         boxes,
         indices,
-        params.sort_precision,
-        params.search_depth_threshold,
+        precision,
+        first_passes,
     );
     let mut optimizer = ReinsertionOptimizer::default();
-    for ratio in [1.0, params.post_collapse_reinsertion_batch_ratio_multiplier] {
-        optimizer.run(&mut bvh, params.reinsertion_batch_ratio * ratio, None);
+    for share in reinsertion {
+        optimizer.run(&mut bvh, *share, None);
     }
     Binary { nodes: bvh.nodes, indices: bvh.primitive_indices }
 }

@@ -8,6 +8,7 @@ use super::{
     leaf::{Candidates, LeafRay},
     node::Content,
     simd::{Kernel, Simd},
+    target::{Left, Target, triangle_crossing},
     tree::Tree,
     walk::{Visitor, walk},
 };
@@ -56,7 +57,7 @@ where
             Entry::Miss => false,
             Entry::Ray(tree_ray) => {
                 let leaf_ray = LeafRay::new(&tree_ray, end);
-                let (limit, left) = (tree_ray.end_above(end), accel.place_left(ray));
+                let (limit, left) = (tree_ray.end_above(end), Left::of(accel, ray));
                 let mut search = Search { test, tree, leaf_ray, left, limit, stopped: false };
                 walk::<S, false>(simd, &tree.nodes, tree.root, &tree_ray, &mut search);
                 search.stopped
@@ -108,7 +109,7 @@ pub(super) struct Search<'a, B, V> {
     pub(super) test: Test<'a, B, V>,
     pub(super) tree: &'a Tree,
     pub(super) leaf_ray: LeafRay,
-    pub(super) left: u32,
+    pub(super) left: Left,
     pub(super) limit: f32,
     pub(super) stopped: bool,
 }
@@ -118,18 +119,28 @@ where
     B: Fn(u32) -> bool,
     V: Visit,
 {
-    /// Whether one of a leaf's candidates stops the ray: a certain hit of an opaque one does without further ado.
+    /// Whether one of the candidates of a leaf whose primitives start at `first` stops the ray: a certain hit of an opaque one does
+    /// without further ado.
     #[inline(always)]
-    fn take<S: Simd>(&mut self, simd: S, first: u32, candidates: &Candidates) -> bool {
+    fn take<S: Simd>(&mut self, simd: S, first: Target, candidates: &Candidates) -> bool {
         let Candidates { mut maybe, certain, .. } = *candidates;
         while maybe != 0 {
             let lane = maybe.trailing_zeros() & 7;
             maybe &= maybe - 1;
-            let place = first + lane;
-            let number = self.test.accel.numbers[place as usize];
-            if certain & 1 << lane != 0 && place != self.left && (self.test.opaque)(number)
-                || self.test.test(simd, place as usize)
-            {
+            let target = first.lane(lane);
+            let place = target.place as usize;
+            let certain = certain & 1 << lane != 0;
+            if certain && (self.test.opaque)(self.test.accel.numbers[place]) {
+                return true;
+            }
+            let stopped = match target.corners(self.tree) {
+                None => self.test.test(simd, place),
+                Some(corners) => {
+                    let crossing = triangle_crossing(simd, corners, self.test.ray, certain);
+                    self.test.crosses(self.test.accel.numbers[place], crossing)
+                }
+            };
+            if stopped {
                 return true;
             }
         }
@@ -164,13 +175,15 @@ where
         self.stopped = match leaf {
             Content::Spheres(k) => {
                 let block = &self.tree.spheres[k];
-                let candidates = block.sort_out(simd, &self.leaf_ray, self.limit);
-                self.take(simd, block.first, &candidates)
+                let mut candidates = block.sort_out(simd, &self.leaf_ray, self.limit);
+                self.left.settle_round(block.first, &mut candidates);
+                self.take(simd, Target::sphere(block.first), &candidates)
             }
             Content::Triangles(k) => {
                 let block = &self.tree.triangles[k];
-                let candidates = block.sort_out(simd, &self.leaf_ray, self.limit);
-                self.take(simd, block.first, &candidates)
+                let mut candidates = block.sort_out(simd, &self.leaf_ray, self.limit);
+                self.left.settle_flat(block.first, &mut candidates);
+                self.take(simd, Target::triangle(block.first, block.corners), &candidates)
             }
             Content::One(place) => self.test.test(simd, place),
             Content::Node(_) => false,

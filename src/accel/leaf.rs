@@ -170,13 +170,16 @@ pub(super) struct Triangles {
     /// The place of the first, and how many there are.
     pub(super) first: u32,
     pub(super) count: u32,
+    /// Where the tree has the corners of the first.
+    pub(super) corners: u32,
 }
 
 impl Triangles {
-    /// A block for primitives from the place `first` on.
-    pub(super) fn new(first: u32) -> Self {
+    /// A block for primitives from the place `first` on, whose corners the tree has from `corners` on.
+    pub(super) fn new(first: u32, corners: u32) -> Self {
         let zero = [[0.0; 8]; 3];
-        Self { corner: zero, edge1: zero, edge2: zero, size: 0.0, coarseness: 1.0, first, count: 0 }
+        let (size, coarseness, count) = (0.0, 1.0, 0);
+        Self { corner: zero, edge1: zero, edge2: zero, size, coarseness, first, count, corners }
     }
 
     /// Adds a triangle; `coarseness` is how many times the usual pad a box is enlarged by.

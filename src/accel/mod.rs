@@ -11,15 +11,18 @@ mod collapse;
 mod crossed;
 mod extreme;
 mod frame;
+mod huge;
 mod leaf;
 mod node;
 mod packet;
+mod plan;
 mod query;
 mod simd;
 #[cfg(target_arch = "x86_64")]
 mod simd_x86;
 #[cfg(feature = "leaf-study")]
 pub mod study;
+mod target;
 #[cfg(test)]
 mod tests;
 mod tree;
@@ -28,6 +31,7 @@ mod walk;
 use std::ops::{ControlFlow, Range};
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::geometry::{
     Bounds, Crossing, Hit, Ray, Shape,
@@ -86,7 +90,7 @@ impl Accel {
 
     /// As [`Accel::build`], with queries by the instructions of `isa`, or the portable ones where the machine lacks them.
     pub fn with_isa(shapes: Vec<Shape>, isa: Isa) -> Self {
-        let bounds = shapes.iter().fold(Bounds::EMPTY, |b, s| b.union(s.bounds()));
+        let bounds = shapes.par_iter().map(Shape::bounds).reduce(|| Bounds::EMPTY, Bounds::union);
         let division = Division::of(&shapes);
         let (tree, mut numbers) = match Tree::build(&shapes, &division) {
             Some((tree, order)) => (Some(tree), order),
@@ -230,13 +234,6 @@ impl Accel {
         simd.crossings(&self.shapes[place], ray, self.numbers[place])
     }
 
-    /// The place of the primitive that `ray` leaves, if it does.
-    #[inline(always)]
-    fn place_left(&self, ray: &Ray) -> u32 {
-        let number = ray.from.map_or(usize::MAX, |from| from.primitive as usize);
-        self.places.get(number).copied().unwrap_or(u32::MAX)
-    }
-
     /// The places of the primitives that are not in the tree.
     #[inline(always)]
     fn outside(&self) -> Range<usize> {
@@ -247,5 +244,7 @@ impl Accel {
 /// The `shapes` in the order of `numbers`, which name each once.
 fn in_order(shapes: Vec<Shape>, numbers: &[u32]) -> Vec<Shape> {
     let mut shapes: Vec<Option<Shape>> = shapes.into_iter().map(Some).collect();
-    numbers.iter().filter_map(|k| shapes[*k as usize].take()).collect()
+    let mut ordered = huge::vec_with_capacity(shapes.len());
+    ordered.extend(numbers.iter().filter_map(|k| shapes[*k as usize].take()));
+    ordered
 }

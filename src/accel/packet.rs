@@ -125,6 +125,8 @@ impl Packet {
     fn meet<S: Simd>(&self, simd: S, node: &Node, slot: usize) -> u64 {
         let mut met = 0;
         for start in (0..LANES).step_by(GROUP) {
+            #[cfg(feature = "leaf-study")]
+            super::study::count_eight();
             let group = |column: &Singles| load(simd, column, start);
             let (mut enter, mut leave) = (simd.splat(0.0), group(&self.limit));
             for axis in 0..3 {
@@ -165,6 +167,8 @@ impl Packet {
         };
         loop {
             if let Content::Node(k) = visit.child.content() {
+                #[cfg(feature = "leaf-study")]
+                super::study::count_beam();
                 let (mut met, enter) = self.beam.test(simd, &tree.nodes[k], limit);
                 let enter = simd.store(enter).0;
                 let base = len;

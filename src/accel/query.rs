@@ -6,6 +6,7 @@ use super::{
     leaf::{Candidates, LeafRay},
     node::Content,
     simd::{Kernel, Simd},
+    target::{Left, Target, triangle_crossing},
     tree::Tree,
     walk::{Visitor, walk},
 };
@@ -28,22 +29,24 @@ impl Best {
         Self { t: end, primitive: 0, face: 0, is_hit: false }
     }
 
-    /// Takes the crossing if it is better: nearer, or as near and of a lower primitive.
+    /// Takes the crossing with the primitive in `place` if it is better: nearer, or as near and of a lower primitive.
     #[inline(always)]
-    fn offer(&mut self, crossing: Crossing, primitive: u32) {
+    fn offer(&mut self, crossing: Crossing, accel: &Accel, place: usize) {
         let t = crossing.t;
-        if t > 0.0 && (t < self.t || t == self.t && primitive < self.primitive) {
-            *self = Self { t, primitive, face: crossing.face, is_hit: true };
+        if t > 0.0 && t <= self.t {
+            let primitive = accel.numbers[place];
+            if t < self.t || primitive < self.primitive {
+                *self = Self { t, primitive, face: crossing.face, is_hit: true };
+            }
         }
     }
 
     /// Offers the crossings of the primitive in `place`.
     #[inline(always)]
     pub(super) fn test<S: Simd>(&mut self, simd: S, accel: &Accel, ray: &Ray, place: usize) {
-        let number = accel.numbers[place];
         let [first, second] = accel.crossings(simd, ray, place);
-        self.offer(first, number);
-        self.offer(second, number);
+        self.offer(first, accel, place);
+        self.offer(second, accel, place);
     }
 
     #[inline(always)]
@@ -94,13 +97,13 @@ impl Kernel for Nearest<'_> {
 /// A certain hit that has not been decided in double precision, because it may never matter.
 #[derive(Clone, Copy)]
 struct Pending {
-    place: u32,
+    target: Target,
     /// Its parameter in the tree's frame is not less than this.
     from: f32,
 }
 
 impl Pending {
-    const NONE: Self = Self { place: u32::MAX, from: f32::INFINITY };
+    const NONE: Self = Self { target: Target::NONE, from: f32::INFINITY };
 }
 
 #[derive(Clone, Copy)]
@@ -110,8 +113,7 @@ pub(super) struct Search<'a> {
     ray: &'a Ray,
     tree_ray: TreeRay,
     leaf_ray: LeafRay,
-    /// The place of the primitive that the ray leaves, whose own test alone knows what that means.
-    left: u32,
+    left: Left,
     /// No hit beyond this parameter, in the tree's frame, can be the nearest.
     pub(super) limit: f32,
     best: Best,
@@ -129,7 +131,7 @@ impl<'a> Search<'a> {
     ) -> Self {
         let leaf_ray = LeafRay::new(&tree_ray, best.t);
         let limit = tree_ray.end_above(best.t);
-        let left = accel.place_left(ray);
+        let left = Left::of(accel, ray);
         let pending = Pending::NONE;
         Self { accel, tree, ray, tree_ray, leaf_ray, left, limit, best, pending }
     }
@@ -141,42 +143,57 @@ impl<'a> Search<'a> {
         self.limit = self.limit.min(self.tree_ray.end_above(self.best.t));
     }
 
-    /// Takes the candidates of a leaf.
+    /// Decides a leaf's primitive, which is hit if `certain`.
+    #[inline(always)]
+    fn decide<S: Simd>(&mut self, simd: S, target: Target, certain: bool) {
+        match target.corners(self.tree) {
+            None => self.test(simd, target.place),
+            Some(corners) => {
+                let crossing = triangle_crossing(simd, corners, self.ray, certain);
+                self.best.offer(crossing, self.accel, target.place as usize);
+                self.limit = self.limit.min(self.tree_ray.end_above(self.best.t));
+            }
+        }
+    }
+
+    /// Takes the candidates of a leaf whose primitives start at `first`.
     ///
     /// A pending hit loses to one that ends before it starts; where intervals overlap, both are decided.
     #[inline(always)]
-    fn take<S: Simd>(&mut self, simd: S, first: u32, candidates: &Candidates) {
+    fn take<S: Simd>(&mut self, simd: S, first: Target, candidates: &Candidates) {
         let Candidates { mut maybe, certain, from, to } = *candidates;
         while maybe != 0 {
             let lane = maybe.trailing_zeros() & 7;
             maybe &= maybe - 1;
-            let place = first + lane;
-            if certain & 1 << lane == 0 || place == self.left {
-                self.test(simd, place);
+            let target = first.lane(lane);
+            if certain & 1 << lane == 0 {
+                self.decide(simd, target, false);
                 continue;
             }
             let (from, to) = (from.0[lane as usize], to.0[lane as usize]);
             if from > self.limit {
                 continue;
             }
-            if to >= self.pending.from && self.pending.place != u32::MAX {
-                self.test(simd, self.pending.place);
+            if to >= self.pending.from && !self.pending.target.is_none() {
+                self.decide(simd, self.pending.target, true);
             }
-            self.pending = Pending { place, from };
+            self.pending = Pending { target, from };
             self.limit = self.limit.min(to);
+            target.prefetch(simd, self.accel, self.tree);
         }
     }
 
     #[inline(always)]
     pub(super) fn finish<S: Simd>(mut self, simd: S) -> Best {
-        if self.pending.place != u32::MAX && self.pending.from <= self.limit {
+        let Pending { target, from } = self.pending;
+        if !target.is_none() && from <= self.limit {
             #[cfg(feature = "leaf-study")]
             if super::study::is_naive() {
-                let number = self.accel.numbers[self.pending.place as usize];
-                self.best.offer(self.leaf_ray.crossing(self.pending.from), number);
+                let crossing = self.leaf_ray.crossing(from);
+                self.best.offer(crossing, self.accel, target.place as usize);
                 return self.best;
             }
-            self.test(simd, self.pending.place);
+            self.decide(simd, target, true);
         }
         self.best
     }
@@ -197,7 +214,7 @@ impl<S: Simd> Visitor<S> for Search<'_> {
             super::study::Textbook::Hit(found) => {
                 return found.for_each(|place, from| {
                     if from < self.limit {
-                        self.pending = Pending { place, from };
+                        self.pending = Pending { target: Target::sphere(place), from };
                         self.limit = from;
                     }
                     false
@@ -207,13 +224,15 @@ impl<S: Simd> Visitor<S> for Search<'_> {
         match leaf {
             Content::Spheres(k) => {
                 let block = &self.tree.spheres[k];
-                let candidates = block.sort_out(simd, &self.leaf_ray, self.limit);
-                self.take(simd, block.first, &candidates);
+                let mut candidates = block.sort_out(simd, &self.leaf_ray, self.limit);
+                self.left.settle_round(block.first, &mut candidates);
+                self.take(simd, Target::sphere(block.first), &candidates);
             }
             Content::Triangles(k) => {
                 let block = &self.tree.triangles[k];
-                let candidates = block.sort_out(simd, &self.leaf_ray, self.limit);
-                self.take(simd, block.first, &candidates);
+                let mut candidates = block.sort_out(simd, &self.leaf_ray, self.limit);
+                self.left.settle_flat(block.first, &mut candidates);
+                self.take(simd, Target::triangle(block.first, block.corners), &candidates);
             }
             Content::One(place) => self.test(simd, place as u32),
             Content::Node(_) => {}

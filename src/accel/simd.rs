@@ -6,10 +6,13 @@
 
 use std::ops::Range;
 
+use glam::DVec3;
+
 use crate::geometry::{
-    Ray, Shape,
+    Crossing, Ray, Shape,
     hit::Crossings,
     lanes::{Column, RayLanes},
+    triangle,
 };
 
 /// Which instructions the queries use; the answers do not depend on it.
@@ -99,6 +102,15 @@ pub(super) trait Simd: Copy {
         crossed: &mut [Column; 2],
     ) -> bool;
 
+    /// [`triangle::crossing`], likewise.
+    fn triangle_crossing(self, corners: &[DVec3; 3], ray: &Ray) -> Crossing;
+
+    /// [`triangle::certain_crossing`], likewise.
+    fn certain_crossing(self, corners: &[DVec3; 3], ray: &Ray) -> Crossing;
+
+    /// Asks for the memory of `x`, which is needed soon.
+    fn prefetch<T>(self, x: &T);
+
     fn splat(self, x: f32) -> Self::F;
     fn load(self, x: &[f32; 8]) -> Self::F;
     fn store(self, x: Self::F) -> Lanes;
@@ -150,6 +162,27 @@ impl Simd for Portable {
         }
         compiled(shape, ray, primitive)
     }
+
+    #[inline(always)]
+    fn triangle_crossing(self, corners: &[DVec3; 3], ray: &Ray) -> Crossing {
+        #[inline(never)]
+        fn compiled(corners: &[DVec3; 3], ray: &Ray) -> Crossing {
+            triangle::crossing(corners, ray)
+        }
+        compiled(corners, ray)
+    }
+
+    #[inline(always)]
+    fn certain_crossing(self, corners: &[DVec3; 3], ray: &Ray) -> Crossing {
+        #[inline(never)]
+        fn compiled(corners: &[DVec3; 3], ray: &Ray) -> Crossing {
+            triangle::certain_crossing(corners, ray)
+        }
+        compiled(corners, ray)
+    }
+
+    #[inline(always)]
+    fn prefetch<T>(self, _: &T) {}
 
     #[inline(always)]
     fn cross_lanes(

@@ -6,18 +6,21 @@
 
 use std::{
     arch::x86_64::{
-        __m256, _CMP_LE_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_cmp_ps, _mm256_div_ps,
-        _mm256_fmadd_ps, _mm256_fmsub_ps, _mm256_fnmadd_ps, _mm256_loadu_ps, _mm256_max_ps,
-        _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_set1_ps, _mm256_sqrt_ps,
-        _mm256_storeu_ps, _mm256_sub_ps, _mm256_xor_ps,
+        __m256, _CMP_LE_OQ, _MM_HINT_T0, _mm_prefetch, _mm256_add_ps, _mm256_and_ps, _mm256_cmp_ps,
+        _mm256_div_ps, _mm256_fmadd_ps, _mm256_fmsub_ps, _mm256_fnmadd_ps, _mm256_loadu_ps,
+        _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_set1_ps,
+        _mm256_sqrt_ps, _mm256_storeu_ps, _mm256_sub_ps, _mm256_xor_ps,
     },
     ops::Range,
 };
 
+use glam::DVec3;
+
 use crate::geometry::{
-    Ray, Shape,
+    Crossing, Ray, Shape,
     hit::Crossings,
     lanes::{Column, RayLanes},
+    triangle,
 };
 
 use super::simd::{Kernel, Lanes, Simd};
@@ -94,6 +97,37 @@ macro_rules! instructions {
                 }
                 // SAFETY: `self` proves that the machine has these features.
                 unsafe { compiled(shape, rays, lanes, crossed) }
+            }
+
+            #[inline(always)]
+            fn triangle_crossing(self, corners: &[DVec3; 3], ray: &Ray) -> Crossing {
+                #[target_feature(enable = $features)]
+                #[inline(never)]
+                fn compiled(corners: &[DVec3; 3], ray: &Ray) -> Crossing {
+                    triangle::crossing(corners, ray)
+                }
+                // SAFETY: `self` proves that the machine has these features.
+                unsafe { compiled(corners, ray) }
+            }
+
+            #[inline(always)]
+            fn certain_crossing(self, corners: &[DVec3; 3], ray: &Ray) -> Crossing {
+                #[target_feature(enable = $features)]
+                #[inline(never)]
+                fn compiled(corners: &[DVec3; 3], ray: &Ray) -> Crossing {
+                    triangle::certain_crossing(corners, ray)
+                }
+                // SAFETY: `self` proves that the machine has these features.
+                unsafe { compiled(corners, ray) }
+            }
+
+            #[inline(always)]
+            fn prefetch<T>(self, x: &T) {
+                let start = std::ptr::from_ref(x).cast::<i8>();
+                for line in 0..size_of::<T>().div_ceil(64) {
+                    // SAFETY: a prefetch reads nothing; it may be of any address, and this one is within `x`.
+                    unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(64 * line)) };
+                }
             }
 
             #[inline(always)]

@@ -2,12 +2,14 @@
 
 use std::ops::Range;
 
+use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{
     build::{self, Division},
     collapse::{Kind, Run, collapse},
     frame::Frame,
+    huge,
     leaf::{Spheres, Triangles},
     node::{Child, Content, Node},
     walk::MAX_DEPTH,
@@ -22,32 +24,34 @@ pub(super) struct Tree {
     pub(super) nodes: Vec<Node>,
     pub(super) spheres: Vec<Spheres>,
     pub(super) triangles: Vec<Triangles>,
+    /// The corners of the triangles, exactly, in the order of the leaves.
+    pub(super) corners: Vec<[DVec3; 3]>,
 }
 
 impl Tree {
     /// Builds the tree over `inside`; also returns its primitives in the order of the leaves.
     pub(super) fn build(shapes: &[Shape], division: &Division) -> Option<(Self, Vec<u32>)> {
         let (frame, inside) = (division.frame?, &division.inside);
-        let kind = |k: u32| match &shapes[inside[k as usize] as usize] {
-            Shape::Sphere(_) => Kind::Sphere,
-            Shape::Triangle(_) | Shape::Face(_) => Kind::Triangle,
-            _ => Kind::Other,
-        };
         let boxes = build::boxes(shapes, inside, &frame);
-        let meshes = (0..inside.len().min(64) as u32).any(|k| kind(k) == Kind::Triangle);
-        let mut wide = collapse(&build::binary(&boxes, meshes), kind);
+        let kinds: Vec<Kind> = inside.par_iter().map(|k| Kind::of(&shapes[*k as usize])).collect();
+        let meshes = kinds.iter().take(64).any(|kind| *kind == Kind::Triangle);
+        let mut wide = collapse(&build::binary(&boxes, meshes), &kinds);
         if wide.depth > MAX_DEPTH {
-            wide = collapse(&build::balanced(&boxes), kind);
+            wide = collapse(&build::balanced(&boxes), &kinds);
         }
         drop(boxes);
         let order: Vec<u32> = wide.order.iter().map(|k| inside[*k as usize]).collect();
         let leaves = Leaves { shapes, order: &order, frame: &frame };
+        let corners = leaves.corners(&wide.triangle_runs);
+        let mut nodes = huge::vec_with_capacity(wide.nodes.len());
+        nodes.append(&mut wide.nodes);
         let tree = Self {
             frame,
             root: wide.root,
-            nodes: wide.nodes,
-            spheres: wide.sphere_runs.par_iter().map(|run| leaves.spheres(*run)).collect(),
-            triangles: wide.triangle_runs.par_iter().map(|run| leaves.triangles(*run)).collect(),
+            nodes,
+            spheres: leaves.spheres(&wide.sphere_runs),
+            triangles: leaves.triangles(&wide.triangle_runs, &corners),
+            corners,
         };
         Some((tree, order))
     }
@@ -73,11 +77,16 @@ struct Leaves<'a> {
 
 impl Leaves<'_> {
     fn shapes_of(&self, run: Run) -> impl Iterator<Item = &Shape> {
-        let places = run.first as usize..(run.first + run.count) as usize;
-        self.order[places].iter().map(|k| &self.shapes[*k as usize])
+        self.order[run.places()].iter().map(|k| &self.shapes[*k as usize])
     }
 
-    fn spheres(&self, run: Run) -> Spheres {
+    fn spheres(&self, runs: &[Run]) -> Vec<Spheres> {
+        let mut blocks = huge::vec_with_capacity(runs.len());
+        runs.par_iter().map(|run| self.sphere_block(*run)).collect_into_vec(&mut blocks);
+        blocks
+    }
+
+    fn sphere_block(&self, run: Run) -> Spheres {
         let mut block = Spheres::new(run.first);
         for shape in self.shapes_of(run) {
             if let Shape::Sphere(s) = shape {
@@ -89,16 +98,47 @@ impl Leaves<'_> {
         block
     }
 
-    fn triangles(&self, run: Run) -> Triangles {
-        let mut block = Triangles::new(run.first);
-        for shape in self.shapes_of(run) {
-            let corners = match shape {
-                Shape::Triangle(t) => t.vertices(),
-                Shape::Face(f) => f.vertices(),
-                _ => continue,
-            };
-            block.push(corners.map(|v| self.frame.point(v)), self.frame.coarseness());
-        }
-        block
+    /// The corners of the triangles of all runs.
+    fn corners(&self, runs: &[Run]) -> Vec<[DVec3; 3]> {
+        let which: Vec<u32> =
+            runs.iter().flat_map(|run| &self.order[run.places()]).copied().collect();
+        let mut corners = huge::vec_with_capacity(which.len());
+        which
+            .par_iter()
+            .map(|k| corners_of(&self.shapes[*k as usize]))
+            .collect_into_vec(&mut corners);
+        corners
+    }
+
+    /// The blocks of all runs, whose triangles have these `corners`.
+    fn triangles(&self, runs: &[Run], corners: &[[DVec3; 3]]) -> Vec<Triangles> {
+        let block = |run: &Run, start: u32| {
+            let mut block = Triangles::new(run.first, start);
+            for corners in &corners[start as usize..][..run.count as usize] {
+                block.push(corners.map(|v| self.frame.point(v)), self.frame.coarseness());
+            }
+            block
+        };
+        let starts = runs.iter().scan(0, |end, run| {
+            let start = *end;
+            *end += run.count;
+            Some(start)
+        });
+        let starts: Vec<u32> = starts.collect();
+        let mut blocks = huge::vec_with_capacity(runs.len());
+        runs.par_iter()
+            .zip(&starts)
+            .map(|(run, start)| block(run, *start))
+            .collect_into_vec(&mut blocks);
+        blocks
+    }
+}
+
+/// The corners of a triangle.
+fn corners_of(shape: &Shape) -> [DVec3; 3] {
+    match shape {
+        Shape::Triangle(t) => t.vertices(),
+        Shape::Face(f) => f.vertices(),
+        _ => unreachable!("blocks of triangles hold nothing else"),
     }
 }

@@ -138,6 +138,8 @@ pub(super) fn walk<S: Simd, const SORTED: bool>(
     loop {
         if let Content::Node(k) = child.content() {
             let node = &nodes[k];
+            #[cfg(feature = "leaf-study")]
+            super::study::count_node();
             let (mut met, enter) = slabs.test(simd, node, visitor.limit());
             if met != 0 {
                 let first = (met.trailing_zeros() & 7) as usize;

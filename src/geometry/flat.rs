@@ -123,7 +123,13 @@ pub(super) fn crossing_of(
     if !outline.is_passed() {
         return Crossing::NONE;
     }
-    Crossing::at(parameter(vertices[0], normal(), ray.origin, ray.dir))
+    plane_crossing(vertices[0], normal(), ray)
+}
+
+/// The crossing of the line of `ray` with the plane through `vertex` square to `normal`.
+#[inline(always)]
+pub(super) fn plane_crossing(vertex: DVec3, normal: DVec3, ray: &Ray) -> Crossing {
+    Crossing::at(parameter(vertex, normal, ray.origin, ray.dir))
 }
 
 /// The parameter of [`crossing`], or NaN; without a branch, for loops over lanes.

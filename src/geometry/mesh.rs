@@ -20,6 +20,7 @@ use super::{
     Bounds, Similarity, flat,
     hit::{Crossing, Crossings, Surface},
     ray::Ray,
+    triangle::{self, doubled_area},
 };
 use crate::math::{cross, scale};
 
@@ -187,19 +188,6 @@ pub fn has_area(corners: &[DVec3; 3]) -> bool {
     plain.max_element() > 1e-12 * sizes && sizes > 1e-250 || doubled_area(corners) != DVec3::ZERO
 }
 
-/// The cross product of two edges, scaled so that it is zero only if the corners lie on one line.
-#[inline(always)]
-fn doubled_area(&[a, b, c]: &[DVec3; 3]) -> DVec3 {
-    let (u, v) = (b - a, c - a);
-    let area = cross(u, v);
-    // Squares of tiny lengths vanish; those of ordinary ones need no scaling.
-    if area.abs().max_element() > 1e-250 && area.is_finite() {
-        area
-    } else {
-        cross(scale::normalized(u).0, scale::normalized(v).0)
-    }
-}
-
 /// A triangle of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Face {
@@ -245,8 +233,7 @@ impl Face {
     /// The crossing of the line of `ray`.
     #[inline(always)]
     pub fn crossings(&self, ray: &Ray) -> Crossings {
-        let corners = self.vertices();
-        [flat::crossing_of(&corners, || doubled_area(&corners), ray), Crossing::NONE]
+        [triangle::crossing(&self.vertices(), ray), Crossing::NONE]
     }
 
     pub(crate) fn surface(&self, ray: &Ray, t: f64, rest: DVec3) -> Surface {

@@ -8,6 +8,7 @@ use super::{
     ray::Ray,
     shape::ShapeError,
 };
+use crate::math::{cross, scale};
 
 /// A flat triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,13 +42,13 @@ impl Triangle {
     /// The crossing of the line of `ray`.
     #[inline(always)]
     pub fn crossings(&self, ray: &Ray) -> Crossings {
-        [flat::crossing(&self.vertices, self.normal, ray), Crossing::NONE]
+        [crossing(&self.vertices, ray), Crossing::NONE]
     }
 
     /// The parameter of the crossing, or NaN.
     #[inline(always)]
     pub(super) fn parameter(&self, origin: DVec3, dir: DVec3) -> f64 {
-        flat::crossing_parameter(&self.vertices, self.normal, origin, dir)
+        flat::crossing_parameter(&self.vertices, doubled_area(&self.vertices), origin, dir)
     }
 
     #[inline(always)]
@@ -59,5 +60,30 @@ impl Triangle {
     #[inline(always)]
     pub(super) fn plane(&self) -> (DVec3, DVec3) {
         (self.vertices[0], self.normal)
+    }
+}
+
+/// The crossing of the line of `ray` with the triangle between `corners`.
+#[inline(always)]
+pub(crate) fn crossing(corners: &[DVec3; 3], ray: &Ray) -> Crossing {
+    flat::crossing_of(corners, || doubled_area(corners), ray)
+}
+
+/// The same, to the bit, for a triangle that is known to be crossed.
+#[inline(always)]
+pub(crate) fn certain_crossing(corners: &[DVec3; 3], ray: &Ray) -> Crossing {
+    flat::plane_crossing(corners[0], doubled_area(corners), ray)
+}
+
+/// The cross product of two edges, scaled so that it is zero only if the corners lie on one line.
+#[inline(always)]
+pub(super) fn doubled_area(&[a, b, c]: &[DVec3; 3]) -> DVec3 {
+    let (u, v) = (b - a, c - a);
+    let area = cross(u, v);
+    // Squares of tiny lengths vanish; those of ordinary ones need no scaling.
+    if area.abs().max_element() > 1e-250 && area.is_finite() {
+        area
+    } else {
+        cross(scale::normalized(u).0, scale::normalized(v).0)
     }
 }

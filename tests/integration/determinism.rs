@@ -2,7 +2,10 @@
 
 use std::num::NonZeroUsize;
 
-use whitted::{render::RenderOptions, scene::load_builtin};
+use whitted::{
+    render::RenderOptions,
+    scene::{Scene, builtin::builtin, load_builtin},
+};
 
 use super::support::rendering;
 
@@ -25,4 +28,29 @@ fn any_number_of_threads_gives_the_same_bytes() {
         );
         assert_eq!(one.rays, many.rays, "{threads} threads");
     }
+}
+
+/// Spheres of all materials over a floor, in the order given and in others: the tree, its leaves and the numbers all differ.
+#[test]
+fn any_order_of_the_primitives_gives_the_same_bytes() {
+    let picture = |order: &dyn Fn(usize, usize) -> usize| {
+        let parts = builtin("spheres").and_then(|scene| scene.parts(Some(2_000)));
+        let mut parts = parts.expect("a built-in scene");
+        let count = parts.shapes.len();
+        parts.shapes = (0..count).map(|k| parts.shapes[order(k, count)].clone()).collect();
+        parts.material_of = (0..count).map(|k| parts.material_of[order(k, count)]).collect();
+        let scene = Scene::assemble("spheres", parts).expect("a scene");
+        let rendering =
+            rendering(&scene, &RenderOptions { size: Some([150, 150]), ..Default::default() });
+        let bits = rendering
+            .film
+            .pixels()
+            .iter()
+            .map(|p| p.to_array().map(f32::to_bits))
+            .collect::<Vec<_>>();
+        (bits, rendering.rays)
+    };
+    let given = picture(&|k, _| k);
+    assert!(given == picture(&|k, count| count - 1 - k), "backward");
+    assert!(given == picture(&|k, count| k * 1_009 % count), "shuffled");
 }

@@ -252,9 +252,8 @@ fn the_balanced_tree_finds_the_same() {
     let division = super::build::Division::of(&shapes);
     let frame = division.frame.expect("finite");
     let boxes = super::build::boxes(&shapes, &division.inside, &frame);
-    let wide = super::collapse::collapse(&super::build::balanced(&boxes), |_| {
-        super::collapse::Kind::Sphere
-    });
+    let kinds = [super::collapse::Kind::Sphere; 300];
+    let wide = super::collapse::collapse(&super::build::balanced(&boxes), &kinds);
     let mut order = wide.order.clone();
     order.sort_unstable();
     assert!(order.into_iter().eq(0..300) && wide.depth <= 9, "depth {}", wide.depth);

@@ -1,0 +1,35 @@
+//! Memory in large pages, so that a ray through gigabytes does not wait for the tables of small ones.
+#![allow(unsafe_code, reason = "the advice to the system is a foreign function")]
+
+/// An empty vector with room for `count` elements, in large pages where the system has some.
+pub(super) fn vec_with_capacity<T>(count: usize) -> Vec<T> {
+    let vec: Vec<T> = Vec::with_capacity(count);
+    #[cfg(target_os = "linux")]
+    linux::advise(vec.as_ptr().addr(), count * size_of::<T>());
+    vec
+}
+
+#[cfg(target_os = "linux")]
+mod linux {
+    use std::ffi::{c_int, c_void};
+
+    /// The size of a large page; where it is another, the advice covers a little less or is refused.
+    const PAGE: usize = 1 << 21;
+
+    const MADV_HUGEPAGE: c_int = 14;
+
+    unsafe extern "C" {
+        fn madvise(address: *mut c_void, length: usize, advice: c_int) -> c_int;
+    }
+
+    /// Asks for large pages in the part of the memory at `start` that they can cover.
+    pub(super) fn advise(start: usize, length: usize) {
+        let (first, end) = (start.next_multiple_of(PAGE), (start + length) / PAGE * PAGE);
+        if first < end {
+            let address = std::ptr::without_provenance_mut(first);
+            // SAFETY: the advice changes by what pages memory is backed, not what is in it, and it is the vector's own
+            // memory. If it is refused, nothing happens.
+            let _ = unsafe { madvise(address, end - first, MADV_HUGEPAGE) };
+        }
+    }
+}

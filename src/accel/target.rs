@@ -1,0 +1,107 @@
+//! A primitive of a leaf that is to be decided in double precision, and the one that a ray leaves.
+
+use glam::DVec3;
+
+use super::{Accel, leaf::Candidates, simd::Simd, tree::Tree};
+use crate::geometry::{Crossing, Ray};
+
+/// A primitive of a leaf.
+#[derive(Clone, Copy)]
+pub(super) struct Target {
+    pub(super) place: u32,
+    /// Where the tree has its corners, if it is a triangle.
+    pub(super) corners: u32,
+}
+
+impl Target {
+    /// No primitive.
+    pub(super) const NONE: Self = Self::sphere(u32::MAX);
+
+    pub(super) const fn sphere(place: u32) -> Self {
+        Self { place, corners: u32::MAX }
+    }
+
+    pub(super) const fn triangle(place: u32, corners: u32) -> Self {
+        Self { place, corners }
+    }
+
+    #[inline(always)]
+    pub(super) fn is_none(self) -> bool {
+        self.place == u32::MAX
+    }
+
+    /// The primitive `lane` places on in the same leaf.
+    #[inline(always)]
+    pub(super) fn lane(self, lane: u32) -> Self {
+        Self { place: self.place + lane, corners: self.corners.saturating_add(lane) }
+    }
+
+    /// Its corners, if it is a triangle.
+    #[inline(always)]
+    pub(super) fn corners(self, tree: &Tree) -> Option<&[DVec3; 3]> {
+        tree.corners.get(self.corners as usize)
+    }
+
+    /// Asks for the memory that a decision needs.
+    #[inline(always)]
+    pub(super) fn prefetch<S: Simd>(self, simd: S, accel: &Accel, tree: &Tree) {
+        match self.corners(tree) {
+            Some(corners) => simd.prefetch(corners),
+            None => simd.prefetch(&accel.shapes[self.place as usize]),
+        }
+        simd.prefetch(&accel.numbers[self.place as usize]);
+    }
+}
+
+/// The crossing of `ray` with a triangle, which is crossed if `certain`; not the one that it leaves.
+#[inline(always)]
+pub(super) fn triangle_crossing<S: Simd>(
+    simd: S,
+    corners: &[DVec3; 3],
+    ray: &Ray,
+    certain: bool,
+) -> Crossing {
+    #[cfg(feature = "leaf-study")]
+    super::study::count_triangle();
+    if certain { simd.certain_crossing(corners, ray) } else { simd.triangle_crossing(corners, ray) }
+}
+
+/// The primitive that a ray leaves.
+#[derive(Clone, Copy)]
+pub(super) struct Left {
+    place: u32,
+    /// Whether the ray goes into it.
+    inward: bool,
+}
+
+impl Left {
+    #[inline(always)]
+    pub(super) fn of(accel: &Accel, ray: &Ray) -> Self {
+        let Some(from) = &ray.from else { return Self { place: u32::MAX, inward: false } };
+        let place = accel.places.get(from.primitive as usize).copied().unwrap_or(u32::MAX);
+        Self { place, inward: from.inward }
+    }
+
+    /// The lane of the leaf that starts at `first` in which it is, as a bit.
+    #[inline(always)]
+    fn lane(self, first: u32) -> u32 {
+        let lane = self.place.wrapping_sub(first);
+        if lane < 8 { 1 << lane } else { 0 }
+    }
+
+    /// Strikes it from the candidates of a leaf of triangles, which no ray that leaves one meets again.
+    #[inline(always)]
+    pub(super) fn settle_flat(self, first: u32, candidates: &mut Candidates) {
+        candidates.maybe &= !self.lane(first);
+    }
+
+    /// Strikes it from the candidates of a leaf of spheres, or leaves it to its own test, which alone knows what a ray inward meets.
+    #[inline(always)]
+    pub(super) fn settle_round(self, first: u32, candidates: &mut Candidates) {
+        let lane = self.lane(first);
+        candidates.certain &= !lane;
+        if !self.inward {
+            candidates.maybe &= !lane;
+        }
+    }
+}
