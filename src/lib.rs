@@ -23,7 +23,7 @@
 //! let rendering = render::render(&scene, &options, &|_| ())?;
 //!
 //! let mut png = Vec::new();
-//! film::encode::write_png(&rendering.film, &mut png)?;
+//! film::write_png(&rendering.film, None, &mut png)?;
 //! assert!(rendering.rays.camera > 60 * 60 && rendering.estimated_rmse < 4.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -72,6 +72,7 @@
 pub mod aa;
 pub mod accel;
 pub mod camera;
+pub mod checkpoint;
 pub mod classic;
 pub mod color;
 pub mod film;
