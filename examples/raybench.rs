@@ -13,7 +13,10 @@ use std::{ops::ControlFlow, time::Instant};
 use stress::{Geometry, SIDE};
 use whitted::{
     accel::Accel,
-    geometry::{Hit, Ray},
+    geometry::{
+        Hit, Ray,
+        lanes::{HitLanes, RayLanes, Vectors},
+    },
 };
 
 fn main() {
@@ -60,14 +63,15 @@ fn main() {
     best(camera.len(), &|| nearest(&camera), "camera_intersect1");
     let tiles = in_tiles(&camera);
     let packets = || {
-        let mut hits = [None; 64];
-        tiles.chunks(64).fold((0, 0.0), |(all, sum), rays| {
-            accel.nearest_packet(rays, &mut hits[..rays.len()]);
-            let (hit, t) = count(&mut hits[..rays.len()].iter().copied());
-            (all + hit, sum + t)
+        let mut hits = HitLanes::NONE;
+        tiles.iter().fold((0, 0.0), |(all, sum), [origin, dir]| {
+            let rays = RayLanes { origin, dir, from: None, used: u64::MAX };
+            accel.nearest_packet(&rays, &mut hits);
+            let found = hits.t.iter().filter(|t| t.is_finite());
+            found.fold((all, sum), |(all, sum), t| (all + 1, sum + t))
         })
     };
-    best(tiles.len(), &packets, "camera_coherent");
+    best(camera.len(), &packets, "camera_coherent");
     let shadow = stress::shadow(&accel);
     let blocked = |ray: &&Ray| accel.is_blocked(ray, 1.0, |_| true, |_, _| ControlFlow::Break(()));
     best(shadow.len(), &|| (shadow.iter().filter(blocked).count(), 0.0), "shadow_occluded1");
@@ -94,8 +98,17 @@ fn geometry(what: &str) -> Geometry {
     }
 }
 
-/// The camera's rays in squares of 8 × 8.
-fn in_tiles(rays: &[Ray]) -> Vec<Ray> {
+/// The camera's rays in squares of 8 × 8: origins and directions.
+fn in_tiles(rays: &[Ray]) -> Vec<[Vectors; 2]> {
     let corners = (0..SIDE / 8).flat_map(|j| (0..SIDE / 8).map(move |i| (8 * i, 8 * j)));
-    corners.flat_map(|(x, y)| (0..64).map(move |k| rays[(y + k / 8) * SIDE + x + k % 8])).collect()
+    let tile = |(x, y): (usize, usize)| {
+        let mut tile = [Vectors::ZERO, Vectors::ZERO];
+        for k in 0..64 {
+            let ray: &Ray = &rays[(y + k / 8) * SIDE + x + k % 8];
+            tile[0].set(k, ray.origin);
+            tile[1].set(k, ray.dir);
+        }
+        tile
+    };
+    corners.map(tile).collect()
 }

@@ -126,8 +126,18 @@ impl View {
     /// The ray, of unit direction, through a place on the film in pixels from its upper left corner: the centre of the first
     /// pixel is (0.5, 0.5).
     pub fn ray(&self, position: DVec2) -> Ray {
-        let dir = self.corner + self.right * position.x + self.down * position.y;
-        Ray::new(self.eye, dir.normalize())
+        Ray::new(self.eye, self.direction(position))
+    }
+
+    /// The unit direction of that ray.
+    #[inline(always)]
+    pub fn direction(&self, position: DVec2) -> DVec3 {
+        (self.corner + self.right * position.x + self.down * position.y).normalize()
+    }
+
+    /// Where all rays start.
+    pub fn eye(&self) -> DVec3 {
+        self.eye
     }
 }
 

@@ -34,7 +34,7 @@ pub struct Look {
     pub inner: bool,
     /// Squared differences to neighbours of another signature, those at the corners counted half.
     pub edge: f32,
-    /// Squared differences to all neighbours.
+    /// Squared differences to all neighbours; 0 for a pixel that is not suspect.
     pub contrast: f32,
     /// Squared second differences, horizontal and vertical.
     pub curve: f32,
@@ -53,9 +53,22 @@ const NEIGHBOURS: [(usize, f32); 8] =
     [(1, 1.0), (3, 1.0), (5, 1.0), (7, 1.0), (0, 0.5), (2, 0.5), (6, 0.5), (8, 0.5)];
 
 impl Look {
+    /// The look of a centre whose neighbours' rays all met the same.
+    pub fn smooth(curve: f32, slope: f32) -> Self {
+        let (edge, contrast, busy) = (0.0, 0.0, 0.0);
+        Self { suspect: false, inner: true, edge, contrast, curve, slope, busy }
+    }
+
     /// The look of the middle one of 3 × 3 centres, given row by row as display levels and signatures.
     pub fn at(levels: &[Vec3; 9], signatures: &[u32; 9]) -> Self {
         let (center, signature) = (levels[4], signatures[4]);
+        let bend =
+            |a: usize, b: usize| (levels[a] + levels[b] - 2.0 * center).length_squared() / 3.0;
+        let curve = bend(3, 5) + bend(1, 7);
+        let slope = squared_distance(levels[3], levels[5]) + squared_distance(levels[1], levels[7]);
+        if signatures.iter().all(|other| *other == signature) {
+            return Self::smooth(curve, slope);
+        }
         let (mut edge, mut contrast) = (0.0, 0.0);
         for (place, weight) in NEIGHBOURS {
             let square = squared_distance(levels[place], center);
@@ -64,8 +77,6 @@ impl Look {
                 edge += weight * square;
             }
         }
-        let bend =
-            |a: usize, b: usize| (levels[a] + levels[b] - 2.0 * center).length_squared() / 3.0;
         let changes = (0..8).filter(|&k| signatures[RING[k]] != signatures[RING[(k + 1) % 8]]);
         let changes = changes.count() as f32;
         let between = [(0, 8), (1, 7), (2, 6), (3, 5)]
@@ -74,12 +85,12 @@ impl Look {
         let busy = ((changes - 2.0) / 4.0).clamp(0.0, 1.0);
         Self {
             busy: if between { busy.max(BETWEEN) } else { busy },
-            suspect: signatures.iter().any(|s| *s != signature),
+            suspect: true,
             inner: [1, 3, 5, 7].iter().all(|&place| signatures[place] == signature),
             edge,
             contrast,
-            curve: bend(3, 5) + bend(1, 7),
-            slope: squared_distance(levels[3], levels[5]) + squared_distance(levels[1], levels[7]),
+            curve,
+            slope,
         }
     }
 

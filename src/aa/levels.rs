@@ -14,17 +14,20 @@ const BUCKET_SHIFT: u32 = 17;
 const FIRST: u32 = (1.0_f32 / 512.0).to_bits() >> BUCKET_SHIFT;
 const BUCKETS: usize = ((1.0_f32.to_bits() >> BUCKET_SHIFT) - FIRST + 1) as usize;
 
-/// The formula at the lower end of each bucket, and at the end of the last.
-static TABLE: LazyLock<[f32; BUCKETS + 1]> = LazyLock::new(|| {
+/// The formula at the lower end of each bucket, and its slope to the upper one.
+static TABLE: LazyLock<[(f32, f32); BUCKETS]> = LazyLock::new(|| {
+    let end = |bucket: usize| f32::from_bits((FIRST + bucket as u32) << BUCKET_SHIFT);
+    let level = |value: f32| (linear_to_srgb(f64::from(value)) * 255.0) as f32;
     std::array::from_fn(|bucket| {
-        let lower = f32::from_bits((FIRST + bucket as u32) << BUCKET_SHIFT);
-        (linear_to_srgb(f64::from(lower)) * 255.0) as f32
+        let (lower, upper) = (end(bucket), end(bucket + 1));
+        (level(lower), (level(upper) - level(lower)) / (upper - lower))
     })
 });
 
 /// The sRGB encoding of a linear colour in levels of 255, not rounded; channels are clamped to `[0, 1]` first.
 ///
 /// A table with straight lines between its entries: off by at most 0.002 levels.
+#[inline]
 pub fn levels(color: Rgb) -> Vec3 {
     let table = &*TABLE;
     let channel = |value: f32| {
@@ -35,10 +38,8 @@ pub fn levels(color: Rgb) -> Vec3 {
         let value = value.min(1.0);
         let bucket = value.to_bits() >> BUCKET_SHIFT;
         let lower = f32::from_bits(bucket << BUCKET_SHIFT);
-        let width = f32::from_bits((bucket + 1) << BUCKET_SHIFT) - lower;
-        let place = (bucket - FIRST) as usize;
-        let (from, to) = (table[place], table[place + 1]);
-        from + (to - from) * ((value - lower) / width)
+        let (level, slope) = table[(bucket - FIRST) as usize];
+        level + slope * (value - lower)
     };
     Vec3::new(channel(color.x), channel(color.y), channel(color.z))
 }

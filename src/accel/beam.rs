@@ -16,6 +16,7 @@ use super::{
     node::Node,
     simd::Simd,
 };
+use crate::geometry::lanes::{LANES, RayLanes};
 
 /// The steepest a ray may be against the axis of its beam.
 const STEEPEST: f64 = 2.0;
@@ -33,29 +34,48 @@ pub(super) struct Beam {
 }
 
 impl Beam {
-    /// The beam of rays from `origin`, at most 2 from the centre, along `dirs`; `None` if they have no axis in common.
-    pub(super) fn around(
-        origin: DVec3,
-        mut dirs: impl Iterator<Item = DVec3> + Clone,
-    ) -> Option<Self> {
-        let first = dirs.clone().next()?;
+    /// The beam of the lanes in use, whose rays share `origin`, at most 2 from the centre, and go away from there along `toward` (1 or
+    /// -1) times their directions; `None` if these have no axis in common.
+    #[inline(always)]
+    pub(super) fn around(origin: DVec3, rays: &RayLanes, toward: f64) -> Option<Self> {
+        let first = rays.dir.get(rays.used.trailing_zeros() as usize % LANES) * toward;
         let axis = first.abs().max_position();
         let axes = [axis, (axis + 1) % 3, (axis + 2) % 3];
         let backward = first[axis] < 0.0;
-        let mut slopes = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
-        let follow = dirs.all(|dir| {
-            let along = if backward { -dir[axis] } else { dir[axis] };
-            along > 0.0
-                && slopes.iter_mut().zip(&axes[1..]).all(|(range, axis)| {
-                    let slope = dir[*axis] / along;
-                    *range = [range[0].min(slope), range[1].max(slope)];
-                    slope.abs() <= STEEPEST
-                })
+        let sign = if backward { -toward } else { toward };
+        let [along, right, up] = axes.map(|axis| rays.dir.axis(axis));
+        // In eight parts, each a lane of vectors.
+        let mut least = [[f64::INFINITY; 8]; 3];
+        let mut largest = [[f64::NEG_INFINITY; 8]; 2];
+        for start in (0..LANES).step_by(8) {
+            for part in 0..8 {
+                let k = start + part;
+                let is_used = rays.used >> k & 1 != 0;
+                let length = along[k] * sign;
+                let slopes = [right[k] * toward / length, up[k] * toward / length];
+                let lesser = |a: f64, b: f64| if is_used & !(a >= b) { a } else { b };
+                let greater = |a: f64, b: f64| if is_used & !(a <= b) { a } else { b };
+                least[2][part] = lesser(length, least[2][part]);
+                for side in 0..2 {
+                    least[side][part] = lesser(slopes[side], least[side][part]);
+                    largest[side][part] = greater(slopes[side], largest[side][part]);
+                }
+            }
+        }
+        // A NaN is kept by the comparisons above, and refused here.
+        let is_all = |parts: &[f64; 8], test: &dyn Fn(f64) -> bool| parts.iter().all(|x| test(*x));
+        let follow = is_all(&least[2], &|length| length > 0.0)
+            && (0..2).all(|side| {
+                is_all(&least[side], &|slope| slope >= -STEEPEST)
+                    && is_all(&largest[side], &|slope| slope <= STEEPEST)
+            });
+        let slopes = [0, 1].map(|side| {
+            let low = least[side].into_iter().fold(f64::INFINITY, f64::min);
+            let high = largest[side].into_iter().fold(f64::NEG_INFINITY, f64::max);
+            [below(low).next_down(), above(high).next_up()]
         });
-        let outward =
-            |[least, largest]: [f64; 2]| [below(least).next_down(), above(largest).next_up()];
         let origin = origin.to_array().map(|x| x as f32);
-        follow.then(|| Self { axes, backward, origin, slopes: slopes.map(outward) })
+        follow.then_some(Self { axes, backward, origin, slopes })
     }
 
     /// How wide the beam is at distance 1.
@@ -64,8 +84,17 @@ impl Beam {
     }
 
     /// How far along the axis a vector goes.
-    pub(super) fn along(&self, v: DVec3) -> f64 {
-        if self.backward { -v[self.axes[0]] } else { v[self.axes[0]] }
+    #[inline(always)]
+    pub(super) fn along(&self, v: [f32; 3]) -> f32 {
+        let [axis, ..] = self.axes;
+        if self.backward { -v[axis] } else { v[axis] }
+    }
+
+    /// As [`Beam::along`].
+    #[inline(always)]
+    pub(super) fn along_axis(&self, v: DVec3) -> f64 {
+        let [axis, ..] = self.axes;
+        if self.backward { -v[axis] } else { v[axis] }
     }
 
     /// Which children of `node` the beam may meet within `limit` along its axis, and where it enters each.

@@ -45,7 +45,8 @@ pub(super) struct TreeRay {
     pub(super) rate: f64,
     /// The parameter (here) at which it arrives.
     pub(super) arrival: f64,
-    slack: f64,
+    /// How much later than computed an end may be.
+    pub(super) slack: f64,
 }
 
 /// What becomes of a ray on its way into the frame.
@@ -109,15 +110,10 @@ impl Frame {
     /// The ray in this frame.
     #[inline(always)]
     pub(super) fn enter(&self, ray: &Ray) -> Entry {
-        let largest = ray.dir.abs().max_element();
-        let exponent = largest.to_bits() >> 52; // biased
-        let shrink = f64::from_bits(2046_u64.wrapping_sub(exponent) << 52);
-        let rate = self.scale / shrink;
-        // Directions that are zero, subnormal or not finite go elsewhere.
-        if !(1..2046).contains(&exponent) || !rate.is_normal() || !ray.dir.is_finite() {
+        let (dir, rate, fits) = self.shrunk(ray.dir);
+        if !fits {
             return Entry::Extreme;
         }
-        let dir = ray.dir * shrink;
         let mut origin = self.point(ray.origin);
         let distance_squared = origin.length_squared();
         let (mut arrival, mut slack) = (0.0, 0.0);
@@ -128,9 +124,32 @@ impl Frame {
             let Some((point, t)) = arrive(origin, dir) else { return Entry::Miss };
             (origin, arrival, slack) = (point, t, ARRIVAL_SLACK);
         }
-        let origin = [origin.x as f32, origin.y as f32, origin.z as f32];
-        let dir = [dir.x as f32, dir.y as f32, dir.z as f32];
-        Entry::Ray(TreeRay { origin, dir, rate, arrival, slack })
+        Entry::Ray(TreeRay::new(origin, dir, rate, arrival, slack))
+    }
+
+    /// The ray in this frame if it need not walk here first, and whether that is so; without a branch, for loops over lanes.
+    #[inline(always)]
+    pub(super) fn near(&self, origin: DVec3, dir: DVec3) -> (TreeRay, bool) {
+        let (dir, rate, fits) = self.shrunk(dir);
+        let origin = self.point(origin);
+        let is_near = origin.length_squared() <= 4.0;
+        (TreeRay::new(origin, dir, rate, 0.0, 0.0), fits & is_near)
+    }
+
+    /// The direction scaled so that its largest component is in [1, 2], the rate of the parameters, and whether both are
+    /// ordinary numbers: directions that are zero, subnormal or not finite go elsewhere.
+    #[inline(always)]
+    fn shrunk(&self, dir: DVec3) -> (DVec3, f64, bool) {
+        let size = dir.abs();
+        let largest = if size.x > size.y { size.x } else { size.y };
+        let largest = if largest > size.z { largest } else { size.z };
+        let exponent = largest.to_bits() >> 52; // biased
+        let shrink = f64::from_bits(2046_u64.wrapping_sub(exponent) << 52);
+        let rate = self.scale / shrink;
+        let is_finite =
+            (size.x < f64::INFINITY) & (size.y < f64::INFINITY) & (size.z < f64::INFINITY);
+        let is_normal = (f64::MIN_POSITIVE..f64::INFINITY).contains(&rate);
+        (dir * shrink, rate, (1..2046).contains(&exponent) & is_normal & is_finite)
     }
 }
 
@@ -154,6 +173,13 @@ fn arrive(origin: DVec3, dir: DVec3) -> Option<(DVec3, f64)> {
 }
 
 impl TreeRay {
+    #[inline(always)]
+    fn new(origin: DVec3, dir: DVec3, rate: f64, arrival: f64, slack: f64) -> Self {
+        let origin = [origin.x as f32, origin.y as f32, origin.z as f32];
+        let dir = [dir.x as f32, dir.y as f32, dir.z as f32];
+        Self { origin, dir, rate, arrival, slack }
+    }
+
     /// The world's parameter `t` here, rounded up and with room for the error of the arrival.
     #[inline(always)]
     pub(super) fn end_above(&self, t: f64) -> f32 {

@@ -29,7 +29,11 @@ use std::ops::{ControlFlow, Range};
 
 use glam::DVec3;
 
-use crate::geometry::{Bounds, Crossing, Hit, Ray, Shape, hit::Crossings};
+use crate::geometry::{
+    Bounds, Crossing, Hit, Ray, Shape,
+    hit::Crossings,
+    lanes::{HitLanes, RayLanes, lanes},
+};
 use build::Division;
 use crossed::Crossed;
 use packet::{BlockedPacket, NearestPacket};
@@ -157,43 +161,39 @@ impl Accel {
         dispatch(self.isa, Nearest { accel: self, ray, end })
     }
 
-    /// The nearest hits of up to 64 rays of one origin, as [`Accel::nearest`] without an end finds them.
-    pub fn nearest_packet(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
-        for (rays, hits) in rays.chunks(packet::RAYS).zip(hits.chunks_mut(packet::RAYS)) {
-            if !dispatch(self.isa, NearestPacket { accel: self, rays, hits }) {
-                for (ray, hit) in rays.iter().zip(hits) {
-                    *hit = self.nearest(ray, f64::INFINITY);
-                }
+    /// The nearest hits of rays that start in one point of free space, as [`Accel::nearest`] without an end finds them.
+    pub fn nearest_packet(&self, rays: &RayLanes, hits: &mut HitLanes) {
+        if dispatch(self.isa, NearestPacket { accel: self, rays, hits }) {
+            return;
+        }
+        *hits = HitLanes::NONE;
+        for k in lanes(rays.used) {
+            if let Some(hit) = self.nearest(&rays.ray(k), f64::INFINITY) {
+                (hits.t[k], hits.primitive[k], hits.face[k]) = (hit.t, hit.primitive, hit.face);
             }
         }
     }
 
-    /// As [`Accel::is_blocked`] for up to 64 rays that all end at `t = 1` in `target`; `blocked` gets the answers, and
-    /// `visit(index, primitive, crossing)` is told the ray too.
-    pub fn is_blocked_packet(
+    /// The lanes for which [`Accel::is_blocked`] is true, of rays that all end at `t = 1` in `target`; `visit(lane, primitive,
+    /// crossing)` is told the lane too.
+    pub fn blocked_packet(
         &self,
-        rays: &[Ray],
+        rays: &RayLanes,
         target: DVec3,
         opaque: impl Fn(u32) -> bool,
-        mut visit: impl FnMut(u32, u32, Crossing) -> ControlFlow<()>,
-        blocked: &mut [bool],
-    ) {
-        let packet = BlockedPacket {
-            accel: self,
-            rays,
-            target,
-            opaque: &opaque,
-            visit: &mut visit,
-            blocked,
+        mut visit: impl FnMut(usize, u32, Crossing) -> ControlFlow<()>,
+    ) -> u64 {
+        let (opaque, visit) = (&opaque, &mut visit);
+        if let Some(blocked) =
+            dispatch(self.isa, BlockedPacket { accel: self, rays, target, opaque, visit })
+        {
+            return blocked;
+        }
+        let is_blocked = |k: usize| {
+            let visit = |primitive, crossing| visit(k, primitive, crossing);
+            u64::from(self.is_blocked(&rays.ray(k), 1.0, opaque, visit)) << k
         };
-        if dispatch(self.isa, packet) {
-            return;
-        }
-        for ((ray, blocked), index) in rays.iter().zip(blocked).zip(0..) {
-            *blocked = self.is_blocked(ray, 1.0, &opaque, |primitive, crossing| {
-                visit(index, primitive, crossing)
-            });
-        }
+        lanes(rays.used).map(is_blocked).fold(0, |all, lane| all | lane)
     }
 
     /// Calls `visit(primitive, crossing)` for every crossing with `0 < t < end`, in no order, until it breaks.

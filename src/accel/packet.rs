@@ -1,7 +1,9 @@
 //! Up to 64 rays that share a point, traced together.
 //!
-//! The nodes are tested against their [`Beam`], once for all; a leaf's box against the rays, eight at a time; and those that may
-//! meet it try its primitives each by itself, as a single ray does. So the answers are, to the bit, those of single rays.
+//! The nodes are tested against their [`Beam`], once for all; a leaf's box against the rays, eight at a time. A leaf of one sphere
+//! or flat shape is then tried by all of them in a loop over the lanes, which vectors can do; the primitives of other leaves by
+//! each ray that may meet them. What decides is the shapes' own arithmetic, so the answers are, to the bit, those of single
+//! rays; that a lane tries what it need not have tried makes no difference.
 
 use std::ops::ControlFlow;
 
@@ -11,28 +13,35 @@ use super::{
     Accel,
     beam::Beam,
     crossed,
-    frame::{Entry, TreeRay, above},
-    leaf::LeafRay,
+    frame::{TreeRay, above},
+    leaf::{Candidates, LeafRay},
     node::{Child, Content, Node},
-    query::{Best, Search},
     simd::{Kernel, Simd},
     tree::Tree,
-    walk::{MAX_DEPTH, Visitor},
+    walk::MAX_DEPTH,
 };
-use crate::geometry::{Crossing, Hit, Ray};
+use crate::geometry::{
+    Crossing,
+    lanes::{Column, HitLanes, LANES, RayLanes, hull, lanes},
+};
 
-/// The most rays of a packet.
-pub(super) const RAYS: usize = 64;
-const LANES: usize = 8;
+/// Rays whose boxes are tested by one instruction.
+const GROUP: usize = 8;
 
 /// Fewer rays than this are as fast one by one.
-const FEWEST: usize = 8;
+const FEWEST: u32 = 8;
+
+/// Fewer lanes than this are as fast one by one where a primitive is tried.
+const FEWEST_LANES: u32 = 3;
 
 /// A wider beam, at distance 1 in units of half the scene, meets too much that no ray of it does.
 const WIDEST: f32 = 0.25;
 
 /// The stack of the walk: each node on the way down leaves at most seven of its children to be visited later.
 const STACK: usize = MAX_DEPTH * 7 + 1;
+
+/// A number in single precision for each lane.
+type Singles = [f32; LANES];
 
 /// A child to be visited: where the beam enters it, what it is, and its box (node and slot).
 #[derive(Clone, Copy)]
@@ -43,81 +52,97 @@ struct Visit {
     slot: u32,
 }
 
-/// Eight rays side by side, for the test of a box.
-#[derive(Clone, Copy)]
-struct Eight {
-    inverse: [[f32; LANES]; 3],
-    offset: [[f32; LANES]; 3],
-    /// Beyond this parameter a ray asks for nothing more; negative for a ray that is done or not there.
-    limit: [f32; LANES],
-}
-
-impl Eight {
-    const NONE: Self =
-        Self { inverse: [[1.0; LANES]; 3], offset: [[0.0; LANES]; 3], limit: [-1.0; LANES] };
-
-    fn set(&mut self, lane: usize, ray: &TreeRay, limit: f32) {
-        let inverse = ray.inverse();
-        for (axis, inverse) in inverse.into_iter().enumerate() {
-            self.inverse[axis][lane] = inverse;
-            self.offset[axis][lane] = ray.origin[axis] * inverse;
-        }
-        self.limit[lane] = limit;
-    }
-
-    /// Which of the rays may meet the box of `node` in `slot`; the same arithmetic as a single ray's.
-    #[inline(always)]
-    fn meet<S: Simd>(&self, simd: S, node: &Node, slot: usize) -> u32 {
-        let (mut enter, mut leave) = (simd.splat(0.0), simd.load(&self.limit));
-        for axis in 0..3 {
-            let (inverse, offset) = (simd.load(&self.inverse[axis]), simd.load(&self.offset[axis]));
-            let low = simd.mul_sub(simd.splat(node.planes[axis][slot]), inverse, offset);
-            let high = simd.mul_sub(simd.splat(node.planes[3 + axis][slot]), inverse, offset);
-            enter = simd.max(enter, simd.min(low, high));
-            leave = simd.min(leave, simd.max(low, high));
-        }
-        simd.le(enter, leave)
-    }
+/// The rays of a packet in the tree's frame, and the beam about them.
+struct Packet {
+    origin: [Singles; 3],
+    dir: [Singles; 3],
+    inverse: [Singles; 3],
+    /// Lengths of the direction here for each length of the direction in the world.
+    rate: Column,
+    /// Beyond this parameter a ray asks for nothing more; negative for a lane that is done or not in use.
+    limit: Singles,
+    beam: Beam,
 }
 
 /// What the rays of a packet search for.
 trait Searches<S: Simd> {
-    /// Tries the primitives of a leaf with one of the rays, and returns the ray's new limit. Must be `#[inline(always)]`.
-    fn leaf(&mut self, simd: S, ray: usize, leaf: Content) -> f32;
+    /// Tries the primitives of a leaf with the rays of the lanes `met`, and may lower their limits. Must be `#[inline(always)]`.
+    fn leaf(&mut self, simd: S, packet: &mut Packet, met: u64, leaf: Content);
 
     /// How far along the axis of the beam any ray still searches.
-    fn end(&self) -> f32;
-}
-
-/// The rays of a packet and the beam about them.
-struct Packet {
-    eights: [Eight; RAYS / LANES],
-    count: usize,
-    beam: Beam,
+    fn end(&self, packet: &Packet) -> f32;
 }
 
 impl Packet {
-    /// The packet of `rays`, which share the point `point`; `None` if they had better be traced one by one.
-    fn new(
-        tree: &Tree,
-        rays: &[TreeRay],
-        limits: impl Iterator<Item = f32>,
-        point: DVec3,
-        dirs: impl Iterator<Item = DVec3> + Clone,
-    ) -> Option<Self> {
+    /// The packet of rays that share the point `point`, from where `toward` times their directions lead; `None` if they had better
+    /// be traced one by one. They end at `end`.
+    #[inline(always)]
+    fn new(tree: &Tree, rays: &RayLanes, point: DVec3, toward: f64, end: f64) -> Option<Self> {
         let point = tree.frame.point(point);
-        if !(point.length_squared() <= 4.0) {
+        if rays.used.count_ones() < FEWEST || !(point.length_squared() <= 4.0) {
             return None;
         }
-        let beam = Beam::around(point, dirs)?;
+        let beam = Beam::around(point, rays, toward)?;
         if beam.spread() > WIDEST {
             return None;
         }
-        let mut eights = [Eight::NONE; RAYS / LANES];
-        for ((ray, limit), k) in rays.iter().zip(limits).zip(0..) {
-            eights[k / LANES].set(k % LANES, ray, limit);
+        let zero = [[0.0; LANES]; 3];
+        let limit = [-1.0; LANES];
+        let mut packet =
+            Self { origin: zero, dir: zero, inverse: zero, rate: [0.0; LANES], limit, beam };
+        let mut fits = [0_u64; LANES];
+        for k in 0..LANES {
+            let (near, is_near) = tree.frame.near(rays.origin.get(k), rays.dir.get(k));
+            let inverse = near.inverse();
+            for axis in 0..3 {
+                packet.origin[axis][k] = near.origin[axis];
+                packet.dir[axis][k] = near.dir[axis];
+                packet.inverse[axis][k] = inverse[axis];
+            }
+            packet.rate[k] = near.rate;
+            fits[k] = u64::from(is_near);
         }
-        Some(Self { eights, count: rays.len(), beam })
+        if lanes(rays.used).any(|k| fits[k] == 0) {
+            return None;
+        }
+        for k in 0..LANES {
+            let is_used = rays.used >> k & 1 != 0;
+            packet.limit[k] = if is_used { limit_above(end * packet.rate[k]) } else { -1.0 };
+        }
+        Some(packet)
+    }
+
+    /// The ray of a lane in the tree's frame.
+    #[inline(always)]
+    fn ray(&self, k: usize) -> TreeRay {
+        let lane = |columns: &[Singles; 3]| columns.each_ref().map(|column| column[k]);
+        let (origin, dir) = (lane(&self.origin), lane(&self.dir));
+        TreeRay { origin, dir, rate: self.rate[k], arrival: 0.0, slack: 0.0 }
+    }
+
+    /// Which of the rays may meet the box of `node` in `slot`; the same arithmetic as a single ray's.
+    #[inline(always)]
+    fn meet<S: Simd>(&self, simd: S, node: &Node, slot: usize) -> u64 {
+        let mut met = 0;
+        for start in (0..LANES).step_by(GROUP) {
+            let group = |column: &Singles| load(simd, column, start);
+            let (mut enter, mut leave) = (simd.splat(0.0), group(&self.limit));
+            for axis in 0..3 {
+                let inverse = group(&self.inverse[axis]);
+                let offset = simd.mul(group(&self.origin[axis]), inverse);
+                let low = simd.mul_sub(simd.splat(node.planes[axis][slot]), inverse, offset);
+                let high = simd.mul_sub(simd.splat(node.planes[3 + axis][slot]), inverse, offset);
+                enter = simd.max(enter, simd.min(low, high));
+                leave = simd.min(leave, simd.max(low, high));
+            }
+            met |= u64::from(simd.le(enter, leave)) << start;
+        }
+        met
+    }
+
+    /// Whether any ray still searches.
+    fn is_open(&self) -> bool {
+        self.limit.iter().any(|limit| *limit >= 0.0)
     }
 
     /// Shows `searches` the leaves that a ray of the packet may meet.
@@ -125,16 +150,16 @@ impl Packet {
     fn walk<S: Simd>(&mut self, simd: S, tree: &Tree, searches: &mut impl Searches<S>) {
         let mut stack = [Visit { enter: 0.0, child: Child::NONE, node: 0, slot: 0 }; STACK];
         let mut len = 0;
-        let mut limit = searches.end();
+        let mut limit = searches.end(self);
         let mut visit = match tree.root.content() {
             Content::Node(node) => {
                 Visit { enter: 0.0, child: tree.root, node: node as u32, slot: 0 }
             }
             content => {
                 // A tree of one leaf has no box to be tested.
-                for ray in 0..self.count {
-                    searches.leaf(simd, ray, content);
-                }
+                let open = (0..LANES).filter(|k| self.limit[*k] >= 0.0);
+                let open = open.fold(0, |open, k| open | 1 << k);
+                searches.leaf(simd, self, open, content);
                 return;
             }
         };
@@ -160,20 +185,10 @@ impl Packet {
                 }
             } else {
                 let node = &tree.nodes[visit.node as usize];
-                let content = visit.child.content();
-                let mut changed = false;
-                for k in 0..self.count.div_ceil(LANES) {
-                    let mut met = self.eights[k].meet(simd, node, visit.slot as usize);
-                    changed |= met != 0;
-                    while met != 0 {
-                        let lane = (met.trailing_zeros() & 7) as usize;
-                        met &= met - 1;
-                        let ray = k * LANES + lane;
-                        self.eights[k].limit[lane] = searches.leaf(simd, ray, content);
-                    }
-                }
-                if changed {
-                    limit = searches.end();
+                let met = self.meet(simd, node, visit.slot as usize);
+                if met != 0 {
+                    searches.leaf(simd, self, met, visit.child.content());
+                    limit = searches.end(self);
                 }
             }
             loop {
@@ -188,11 +203,36 @@ impl Packet {
     }
 }
 
-/// The search for the nearest hits of rays from one origin.
+/// Whether primitives may be tried in lanes; the naive ones of the study have none.
+#[inline(always)]
+fn has_lanes() -> bool {
+    #[cfg(feature = "leaf-study")]
+    if super::study::is_naive() {
+        return false;
+    }
+    true
+}
+
+/// Eight lanes of a column.
+#[inline(always)]
+fn load<S: Simd>(simd: S, column: &Singles, start: usize) -> S::F {
+    match column[start..].first_chunk() {
+        Some(group) => simd.load(group),
+        None => simd.splat(-1.0),
+    }
+}
+
+/// A limit not below `x`, without a branch.
+#[inline(always)]
+fn limit_above(x: f64) -> f32 {
+    (x as f32) * (1.0 + 2.0 * f32::EPSILON) + f32::MIN_POSITIVE
+}
+
+/// The search for the nearest hits of rays from one origin in free space.
 pub(super) struct NearestPacket<'a> {
     pub(super) accel: &'a Accel,
-    pub(super) rays: &'a [Ray],
-    pub(super) hits: &'a mut [Option<Hit>],
+    pub(super) rays: &'a RayLanes<'a>,
+    pub(super) hits: &'a mut HitLanes,
 }
 
 impl Kernel for NearestPacket<'_> {
@@ -202,206 +242,352 @@ impl Kernel for NearestPacket<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> bool {
         let Self { accel, rays, hits } = self;
-        let Some(tree) = accel.packet_tree(rays) else { return false };
-        let (mut searches, mut tree_rays) = (Vec::with_capacity(RAYS), Vec::with_capacity(RAYS));
-        for ray in rays {
-            let Entry::Ray(tree_ray) = tree.frame.enter(ray) else { return false };
-            let mut best = Best::before(f64::INFINITY);
-            for place in accel.outside() {
-                best.test(simd, accel, ray, place);
-            }
-            searches.push(Search::new(accel, tree, ray, tree_ray, best));
-            tree_rays.push(tree_ray);
-        }
-        let limits = searches.iter().map(|search| search.limit);
-        let dirs = rays.iter().map(|ray| ray.dir);
-        let Some(mut packet) = Packet::new(tree, &tree_rays, limits, rays[0].origin, dirs) else {
+        let Some(tree) = &accel.tree else { return false };
+        let origin = rays.origin.get(rays.used.trailing_zeros() as usize % LANES);
+        let Some(mut packet) = Packet::new(tree, rays, origin, 1.0, f64::INFINITY) else {
             return false;
         };
-        let (mut rates, mut ends) = ([0.0; RAYS], [f32::NEG_INFINITY; RAYS]);
-        for (k, ray) in tree_rays.iter().enumerate() {
-            let dir = DVec3::from_array(ray.dir.map(f64::from));
-            rates[k] = above(packet.beam.along(dir)).next_up();
-            ends[k] = (searches[k].limit * rates[k]).next_up();
+        *hits = HitLanes::NONE;
+        let mut rates = [0.0; LANES];
+        for k in 0..LANES {
+            let along = limit_above(f64::from(packet.beam.along(packet.ray(k).dir)));
+            rates[k] = if packet.limit[k] >= 0.0 { along } else { 0.0 };
         }
-        let mut nearest = Nearest { searches: &mut searches, rates, ends };
+        let crossed = [[f64::NAN; LANES]; 2];
+        let pending = [u32::MAX; LANES];
+        let from = [f32::INFINITY; LANES];
+        let mut nearest = Nearest { accel, tree, rays, hits, rates, crossed, pending, from };
+        for place in accel.outside() {
+            nearest.test(simd, &mut packet, place, rays.used);
+        }
         packet.walk(simd, tree, &mut nearest);
-        for (hit, search) in hits.iter_mut().zip(searches) {
-            *hit = search.finish(simd).hit();
-        }
+        nearest.finish(simd, &mut packet);
         true
     }
 }
 
-struct Nearest<'s, 'a> {
-    searches: &'s mut [Search<'a>],
+struct Nearest<'a> {
+    accel: &'a Accel,
+    tree: &'a Tree,
+    rays: &'a RayLanes<'a>,
+    hits: &'a mut HitLanes,
     /// How far each ray goes along the beam's axis in one unit of its parameter, rounded up.
-    rates: [f32; RAYS],
-    /// How far along the axis each still searches.
-    ends: [f32; RAYS],
+    rates: Singles,
+    /// Where the lanes cross the primitive that is tried.
+    crossed: [Column; 2],
+    /// A certain hit of each lane, that has not been decided in double precision because it may never matter: its place, and what its
+    /// parameter is not less than.
+    pending: [u32; LANES],
+    from: Singles,
 }
 
-impl<S: Simd> Searches<S> for Nearest<'_, '_> {
+impl Nearest<'_> {
+    /// Tries the primitive in `place` with the rays of the lanes `met`.
     #[inline(always)]
-    fn leaf(&mut self, simd: S, ray: usize, leaf: Content) -> f32 {
-        let search = &mut self.searches[ray];
-        search.leaf(simd, leaf);
-        self.ends[ray] = (search.limit * self.rates[ray]).next_up();
-        search.limit
+    fn test<S: Simd>(&mut self, simd: S, packet: &mut Packet, place: usize, met: u64) {
+        let (number, shape) = (self.accel.numbers[place], &self.accel.shapes[place]);
+        let range = hull(met);
+        if met.count_ones() < FEWEST_LANES
+            || !has_lanes()
+            || !simd.cross_lanes(shape, self.rays, range.clone(), &mut self.crossed)
+        {
+            for k in lanes(met) {
+                for crossing in self.accel.crossings(simd, &self.rays.ray(k), place) {
+                    self.offer(packet, k, number, crossing);
+                }
+            }
+            return;
+        }
+        let [first, second] = &self.crossed;
+        let hits = &mut *self.hits;
+        for k in range.clone() {
+            // The second is never better where the first is ahead.
+            let t = if first[k] > 0.0 { first[k] } else { second[k] };
+            let is_better =
+                (t > 0.0) & ((t < hits.t[k]) | (t == hits.t[k]) & (number < hits.primitive[k]));
+            hits.t[k] = if is_better { t } else { hits.t[k] };
+            hits.primitive[k] = if is_better { number } else { hits.primitive[k] };
+            hits.face[k] = if is_better { 0 } else { hits.face[k] };
+            let limit = limit_above(hits.t[k] * packet.rate[k]);
+            packet.limit[k] = if limit < packet.limit[k] { limit } else { packet.limit[k] };
+        }
+    }
+
+    /// Takes a crossing of the ray of one lane if it is better: nearer, or as near and of a lower primitive.
+    #[inline(always)]
+    fn offer(&mut self, packet: &mut Packet, k: usize, number: u32, crossing: Crossing) {
+        let (t, hits) = (crossing.t, &mut *self.hits);
+        if t > 0.0 && (t < hits.t[k] || t == hits.t[k] && number < hits.primitive[k]) {
+            (hits.t[k], hits.primitive[k], hits.face[k]) = (t, number, crossing.face);
+            packet.limit[k] = packet.limit[k].min(limit_above(t * packet.rate[k]));
+        }
+    }
+
+    /// Takes the candidates of a leaf for the ray of one lane.
+    ///
+    /// A pending hit loses to one that ends before it starts; where intervals overlap, both are decided.
+    #[inline(always)]
+    fn take<S: Simd>(
+        &mut self,
+        simd: S,
+        packet: &mut Packet,
+        k: usize,
+        first: u32,
+        candidates: &Candidates,
+    ) {
+        let Candidates { mut maybe, certain, from, to } = *candidates;
+        while maybe != 0 {
+            let lane = maybe.trailing_zeros() & 7;
+            maybe &= maybe - 1;
+            let place = first + lane;
+            if certain & 1 << lane == 0 {
+                self.test(simd, packet, place as usize, 1 << k);
+                continue;
+            }
+            let (from, to) = (from.0[lane as usize], to.0[lane as usize]);
+            if from > packet.limit[k] {
+                continue;
+            }
+            if to >= self.from[k] && self.pending[k] != u32::MAX {
+                self.test(simd, packet, self.pending[k] as usize, 1 << k);
+            }
+            (self.pending[k], self.from[k]) = (place, from);
+            packet.limit[k] = packet.limit[k].min(to);
+        }
+    }
+
+    /// Decides what is pending.
+    #[inline(always)]
+    fn finish<S: Simd>(&mut self, simd: S, packet: &mut Packet) {
+        let pending = |k: usize| self.pending[k] != u32::MAX && self.from[k] <= packet.limit[k];
+        let mut open = (0..LANES).fold(0_u64, |open, k| open | u64::from(pending(k)) << k);
+        while open != 0 {
+            let place = self.pending[open.trailing_zeros() as usize];
+            let same = |k: usize| u64::from(self.pending[k] == place) << k;
+            let same = open & (0..LANES).fold(0, |all, k| all | same(k));
+            open &= !same;
+            self.test(simd, packet, place as usize, same);
+        }
+    }
+}
+
+impl<S: Simd> Searches<S> for Nearest<'_> {
+    #[inline(always)]
+    fn leaf(&mut self, simd: S, packet: &mut Packet, met: u64, leaf: Content) {
+        match leaf {
+            Content::Spheres(block) => {
+                let block = &self.tree.spheres[block];
+                for k in lanes(met) {
+                    let ray = LeafRay::new(&packet.ray(k), f64::INFINITY);
+                    let candidates = block.sort_out(simd, &ray, packet.limit[k]);
+                    self.take(simd, packet, k, block.first, &candidates);
+                }
+            }
+            Content::Triangles(block) => {
+                let block = &self.tree.triangles[block];
+                for k in lanes(met) {
+                    let ray = LeafRay::new(&packet.ray(k), f64::INFINITY);
+                    let candidates = block.sort_out(simd, &ray, packet.limit[k]);
+                    self.take(simd, packet, k, block.first, &candidates);
+                }
+            }
+            Content::One(place) => self.test(simd, packet, place, met),
+            Content::Node(_) => {}
+        }
     }
 
     #[inline(always)]
-    fn end(&self) -> f32 {
-        let mut end = self.ends[0];
-        for other in &self.ends[1..] {
-            end = if *other > end { *other } else { end };
+    fn end(&self, packet: &Packet) -> f32 {
+        // In eight parts, each a lane of vectors.
+        let mut ends = [f32::NEG_INFINITY; GROUP];
+        for (limits, rates) in packet.limit.chunks_exact(GROUP).zip(self.rates.chunks_exact(GROUP))
+        {
+            for ((end, limit), rate) in ends.iter_mut().zip(limits).zip(rates) {
+                let other = limit_above(f64::from(limit * rate));
+                *end = if other > *end { other } else { *end };
+            }
         }
-        end
+        ends.into_iter().fold(f32::NEG_INFINITY, f32::max)
     }
 }
 
 /// The search for what blocks rays that end, at `t = 1`, in one point.
 pub(super) struct BlockedPacket<'a, B, V> {
     pub(super) accel: &'a Accel,
-    pub(super) rays: &'a [Ray],
+    pub(super) rays: &'a RayLanes<'a>,
     pub(super) target: DVec3,
     pub(super) opaque: &'a B,
     pub(super) visit: &'a mut V,
-    pub(super) blocked: &'a mut [bool],
 }
 
 impl<B, V> Kernel for BlockedPacket<'_, B, V>
 where
     B: Fn(u32) -> bool,
-    V: FnMut(u32, u32, Crossing) -> ControlFlow<()>,
+    V: FnMut(usize, u32, Crossing) -> ControlFlow<()>,
 {
-    type Output = bool;
+    /// The lanes that are blocked; `None` if the rays were not traced and each must be by itself.
+    type Output = Option<u64>;
 
-    /// Returns whether the rays were traced; if not, each must be by itself.
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) -> bool {
-        let Self { accel, rays, target, opaque, visit, blocked } = self;
-        let Some(tree) = accel.packet_tree(rays) else { return false };
-        let mut tree_rays = Vec::with_capacity(RAYS);
-        for ray in rays {
-            let Entry::Ray(tree_ray) = tree.frame.enter(ray) else { return false };
-            tree_rays.push(tree_ray);
-        }
-        let limits = tree_rays.iter().map(|ray| ray.end_above(1.0));
-        let dirs = rays.iter().map(|ray| -ray.dir);
-        let Some(mut packet) = Packet::new(tree, &tree_rays, limits, target, dirs.clone()) else {
-            return false;
-        };
+    fn run<S: Simd>(self, simd: S) -> Option<u64> {
+        let Self { accel, rays, target, opaque, visit } = self;
+        let tree = accel.tree.as_ref()?;
+        let mut packet = Packet::new(tree, rays, target, -1.0, 1.0)?;
         // Seen from the light, the furthest start of a ray, rounded up with room for the error of either end.
-        let length = |dir: DVec3| packet.beam.along(tree.frame.vector(dir));
-        let end = above(dirs.map(length).fold(0.0, f64::max) * (1.0 + 1e-6)).next_up();
-        let mut blocks = Blocks {
-            accel,
-            tree,
-            rays,
-            tree_rays: &tree_rays,
-            opaque,
-            visit,
-            blocked,
-            open: rays.len(),
-            end,
-        };
-        for k in 0..rays.len() {
-            for place in accel.outside() {
-                if blocks.open_at(k) && blocks.test(k).test(simd, place) {
-                    blocks.close(k);
-                    packet.eights[k / LANES].limit[k % LANES] = -1.0;
-                }
-            }
+        let mut end = 0.0_f64;
+        for k in lanes(rays.used) {
+            end = end.max(-packet.beam.along_axis(tree.frame.vector(rays.dir.get(k))));
+        }
+        let end = above(end * (1.0 + 1e-6)).next_up();
+        let crossed = [[f64::NAN; LANES]; 2];
+        let mut blocks = Blocks { accel, tree, rays, opaque, visit, crossed, end };
+        for place in accel.outside() {
+            blocks.test(simd, &mut packet, place, rays.used);
         }
         packet.walk(simd, tree, &mut blocks);
-        true
+        let blocked = |k: usize| u64::from(packet.limit[k] < 0.0) << k;
+        Some(rays.used & (0..LANES).fold(0, |all, k| all | blocked(k)))
     }
 }
 
 struct Blocks<'a, B, V> {
     accel: &'a Accel,
     tree: &'a Tree,
-    rays: &'a [Ray],
-    tree_rays: &'a [TreeRay],
+    rays: &'a RayLanes<'a>,
     opaque: &'a B,
     visit: &'a mut V,
-    blocked: &'a mut [bool],
-    /// How many rays are not blocked.
-    open: usize,
+    /// Where the lanes cross the primitive that is tried.
+    crossed: [Column; 2],
     end: f32,
 }
 
-/// A visit that knows its ray.
+/// A visit that knows its lane.
 pub(super) struct VisitOf<'v, V> {
     visit: &'v mut V,
-    ray: u32,
+    lane: usize,
 }
 
-impl<V: FnMut(u32, u32, Crossing) -> ControlFlow<()>> crossed::Visit for VisitOf<'_, V> {
+impl<V: FnMut(usize, u32, Crossing) -> ControlFlow<()>> crossed::Visit for VisitOf<'_, V> {
     #[inline(always)]
     fn visit(&mut self, primitive: u32, crossing: Crossing) -> ControlFlow<()> {
-        (self.visit)(self.ray, primitive, crossing)
+        (self.visit)(self.lane, primitive, crossing)
     }
 }
 
-impl<'a, B, V> Blocks<'a, B, V>
+impl<B, V> Blocks<'_, B, V>
 where
     B: Fn(u32) -> bool,
-    V: FnMut(u32, u32, Crossing) -> ControlFlow<()>,
+    V: FnMut(usize, u32, Crossing) -> ControlFlow<()>,
 {
+    /// Tries the primitive in `place` with the rays of the lanes `met`.
     #[inline(always)]
-    fn test(&mut self, ray: usize) -> crossed::Test<'a, &'a B, VisitOf<'_, V>> {
-        let visit = VisitOf { visit: self.visit, ray: ray as u32 };
-        crossed::Test {
-            accel: self.accel,
-            ray: &self.rays[ray],
-            end: 1.0,
-            opaque: self.opaque,
-            visit,
+    fn test<S: Simd>(&mut self, simd: S, packet: &mut Packet, place: usize, met: u64) {
+        let (number, shape) = (self.accel.numbers[place], &self.accel.shapes[place]);
+        let own = self.rays.leaving(number);
+        let (range, others) = (hull(met & !own), met & !own);
+        if others.count_ones() < FEWEST_LANES
+            || !has_lanes()
+            || !simd.cross_lanes(shape, self.rays, range.clone(), &mut self.crossed)
+        {
+            self.test_each(simd, packet, place, met);
+            return;
+        }
+        let [first, second] = &self.crossed;
+        let is_between = |t: f64| (t > 0.0) & (t < 1.0);
+        if (self.opaque)(number) {
+            for k in range.clone() {
+                let is_blocked = is_between(first[k]) | is_between(second[k]);
+                let keeps = own >> k & 1 != 0;
+                packet.limit[k] = if is_blocked & !keeps { -1.0 } else { packet.limit[k] };
+            }
+        } else {
+            let mut crossed = [0_u64; LANES];
+            for k in range.clone() {
+                crossed[k] = u64::from(is_between(first[k]) | is_between(second[k]));
+            }
+            for k in lanes(others).filter(|k| crossed[*k] != 0) {
+                for t in [first[k], second[k]].into_iter().filter(|t| is_between(*t)) {
+                    if (self.visit)(k, number, Crossing::at(t)).is_break() {
+                        packet.limit[k] = -1.0;
+                        break;
+                    }
+                }
+            }
+        }
+        self.test_each(simd, packet, place, met & own);
+    }
+
+    /// Tries the primitive in `place` with the rays of the lanes `met` one by one.
+    #[inline(always)]
+    fn test_each<S: Simd>(&mut self, simd: S, packet: &mut Packet, place: usize, met: u64) {
+        for k in lanes(met) {
+            let ray = self.rays.ray(k);
+            let visit = VisitOf { visit: self.visit, lane: k };
+            let (accel, opaque) = (self.accel, self.opaque);
+            let mut test = crossed::Test { accel, ray: &ray, end: 1.0, opaque, visit };
+            if test.test(simd, place) {
+                packet.limit[k] = -1.0;
+            }
         }
     }
 
-    fn open_at(&self, ray: usize) -> bool {
-        !self.blocked[ray]
-    }
-
+    /// Takes the candidates of a leaf for the ray of one lane: a certain hit of an opaque one blocks it without further ado.
     #[inline(always)]
-    fn close(&mut self, ray: usize) {
-        self.blocked[ray] = true;
-        self.open -= 1;
+    fn take<S: Simd>(
+        &mut self,
+        simd: S,
+        packet: &mut Packet,
+        k: usize,
+        first: u32,
+        candidates: &Candidates,
+    ) {
+        let Candidates { mut maybe, certain, .. } = *candidates;
+        let left = self.rays.from.map_or(u32::MAX, |from| from.hits.primitive[k]);
+        while maybe != 0 && packet.limit[k] >= 0.0 {
+            let lane = maybe.trailing_zeros() & 7;
+            maybe &= maybe - 1;
+            let place = (first + lane) as usize;
+            let number = self.accel.numbers[place];
+            if certain & 1 << lane != 0 && number != left && (self.opaque)(number) {
+                packet.limit[k] = -1.0;
+            } else {
+                self.test_each(simd, packet, place, 1 << k);
+            }
+        }
     }
 }
 
 impl<S: Simd, B, V> Searches<S> for Blocks<'_, B, V>
 where
     B: Fn(u32) -> bool,
-    V: FnMut(u32, u32, Crossing) -> ControlFlow<()>,
+    V: FnMut(usize, u32, Crossing) -> ControlFlow<()>,
 {
     #[inline(always)]
-    fn leaf(&mut self, simd: S, ray: usize, leaf: Content) -> f32 {
-        let tree_ray = &self.tree_rays[ray];
-        let (leaf_ray, limit) = (LeafRay::new(tree_ray, 1.0), tree_ray.end_above(1.0));
-        let (tree, left) = (self.tree, self.accel.place_left(&self.rays[ray]));
-        let test = self.test(ray);
-        let mut search = crossed::Search { test, tree, leaf_ray, left, limit, stopped: false };
-        if search.leaf(simd, leaf) {
-            self.close(ray);
-            return -1.0;
+    fn leaf(&mut self, simd: S, packet: &mut Packet, met: u64, leaf: Content) {
+        match leaf {
+            Content::Spheres(block) => {
+                let block = &self.tree.spheres[block];
+                for k in lanes(met) {
+                    let ray = LeafRay::new(&packet.ray(k), 1.0);
+                    let candidates = block.sort_out(simd, &ray, packet.limit[k]);
+                    self.take(simd, packet, k, block.first, &candidates);
+                }
+            }
+            Content::Triangles(block) => {
+                let block = &self.tree.triangles[block];
+                for k in lanes(met) {
+                    let ray = LeafRay::new(&packet.ray(k), 1.0);
+                    let candidates = block.sort_out(simd, &ray, packet.limit[k]);
+                    self.take(simd, packet, k, block.first, &candidates);
+                }
+            }
+            Content::One(place) => self.test(simd, packet, place, met),
+            Content::Node(_) => {}
         }
-        limit
     }
 
     #[inline(always)]
-    fn end(&self) -> f32 {
-        if self.open == 0 { f32::NEG_INFINITY } else { self.end }
-    }
-}
-
-impl Accel {
-    /// The tree, if as many rays as these are worth a packet.
-    #[inline(always)]
-    fn packet_tree(&self, rays: &[Ray]) -> Option<&Tree> {
-        self.tree.as_ref().filter(|_| (FEWEST..=RAYS).contains(&rays.len()))
+    fn end(&self, packet: &Packet) -> f32 {
+        if packet.is_open() { self.end } else { f32::NEG_INFINITY }
     }
 }

@@ -4,7 +4,13 @@
 //! `#[inline(always)]`, or the compiler builds them for the baseline and every operation becomes a call; then
 //! `f64::mul_add` in the shapes' own tests is an instruction too, with the same result as the library's function.
 
-use crate::geometry::{Ray, Shape, hit::Crossings};
+use std::ops::Range;
+
+use crate::geometry::{
+    Ray, Shape,
+    hit::Crossings,
+    lanes::{Column, RayLanes},
+};
 
 /// Which instructions the queries use; the answers do not depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -14,15 +20,18 @@ pub enum Isa {
     Portable,
     /// AVX2 and FMA of x86-64.
     Avx2,
+    /// AVX-512 of x86-64: F, VL, DQ and BW.
+    Avx512,
 }
 
 impl Isa {
     /// All there are.
-    pub const ALL: [Self; 2] = [Self::Portable, Self::Avx2];
+    pub const ALL: [Self; 3] = [Self::Portable, Self::Avx2, Self::Avx512];
 
     /// The fastest that this machine has.
     pub fn detect() -> Self {
-        if Self::Avx2.is_available() { Self::Avx2 } else { Self::Portable }
+        let best = Self::ALL.into_iter().rev().find(|isa| isa.is_available());
+        best.unwrap_or(Self::Portable)
     }
 
     /// Whether this machine has it.
@@ -31,8 +40,10 @@ impl Isa {
             Self::Portable => true,
             #[cfg(target_arch = "x86_64")]
             Self::Avx2 => super::simd_x86::Avx2::detect().is_some(),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => super::simd_x86::Avx512::detect().is_some(),
             #[cfg(not(target_arch = "x86_64"))]
-            Self::Avx2 => false,
+            Self::Avx2 | Self::Avx512 => false,
         }
     }
 }
@@ -54,6 +65,11 @@ pub(super) fn dispatch<K: Kernel>(isa: Isa, kernel: K) -> K::Output {
             Some(avx2) => avx2.vectorize(kernel),
             None => Portable.vectorize(kernel),
         },
+        #[cfg(target_arch = "x86_64")]
+        Isa::Avx512 => match super::simd_x86::Avx512::detect() {
+            Some(avx512) => avx512.vectorize(kernel),
+            None => Portable.vectorize(kernel),
+        },
         _ => Portable.vectorize(kernel),
     }
 }
@@ -73,6 +89,15 @@ pub(super) trait Simd: Copy {
 
     /// [`Shape::crossings_of`], compiled once for these instructions rather than into every kernel.
     fn crossings(self, shape: &Shape, ray: &Ray, primitive: u32) -> Crossings;
+
+    /// [`Shape::cross_lanes`], likewise.
+    fn cross_lanes(
+        self,
+        shape: &Shape,
+        rays: &RayLanes,
+        lanes: Range<usize>,
+        crossed: &mut [Column; 2],
+    ) -> bool;
 
     fn splat(self, x: f32) -> Self::F;
     fn load(self, x: &[f32; 8]) -> Self::F;
@@ -124,6 +149,26 @@ impl Simd for Portable {
             shape.crossings_of(ray, primitive)
         }
         compiled(shape, ray, primitive)
+    }
+
+    #[inline(always)]
+    fn cross_lanes(
+        self,
+        shape: &Shape,
+        rays: &RayLanes,
+        lanes: Range<usize>,
+        crossed: &mut [Column; 2],
+    ) -> bool {
+        #[inline(never)]
+        fn compiled(
+            shape: &Shape,
+            rays: &RayLanes,
+            lanes: Range<usize>,
+            crossed: &mut [Column; 2],
+        ) -> bool {
+            shape.cross_lanes(rays, lanes, crossed)
+        }
+        compiled(shape, rays, lanes, crossed)
     }
 
     #[inline(always)]

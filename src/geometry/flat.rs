@@ -19,8 +19,11 @@ use super::{
 use crate::math::{self, compensated::two_sum, cross, difference_of_products, scale};
 
 /// The shear that turns a direction into the third axis.
+#[derive(Clone, Copy)]
 struct Shear {
-    axis: u8,
+    /// The direction's largest component, which becomes the last; z if neither.
+    is_x: bool,
+    is_y: bool,
     x: f64,
     y: f64,
 }
@@ -29,38 +32,78 @@ impl Shear {
     #[inline(always)]
     fn along(dir: DVec3) -> Self {
         let size = dir.abs();
-        let axis = if size.x > size.y && size.x > size.z {
-            0
-        } else if size.y > size.z {
-            1
-        } else {
-            2
-        };
-        let d = permuted(dir, axis);
-        Self { axis, x: d.x / d.z, y: d.y / d.z }
+        let is_x = size.x > size.y && size.x > size.z;
+        let is_y = !is_x && size.y > size.z;
+        let d = permuted(dir, is_x, is_y);
+        Self { is_x, is_y, x: d.x / d.z, y: d.y / d.z }
     }
 
     /// The place of `v` seen along the direction.
     #[inline(always)]
     fn project(&self, v: DVec3) -> DVec2 {
-        let v = permuted(v, self.axis);
+        let v = permuted(v, self.is_x, self.is_y);
         DVec2::new((-self.x).mul_add(v.z, v.x), (-self.y).mul_add(v.z, v.y))
     }
 }
 
-/// `v` with its components turned so that `axis` comes last.
+/// `v` with its components turned so that the chosen one comes last.
 #[inline(always)]
-fn permuted(v: DVec3, axis: u8) -> DVec3 {
-    match axis {
-        0 => DVec3::new(v.y, v.z, v.x),
-        1 => DVec3::new(v.z, v.x, v.y),
-        _ => v,
+fn permuted(v: DVec3, is_x: bool, is_y: bool) -> DVec3 {
+    let pick = |x: f64, y: f64, z: f64| {
+        if is_x {
+            x
+        } else if is_y {
+            y
+        } else {
+            z
+        }
+    };
+    DVec3::new(pick(v.y, v.z, v.x), pick(v.z, v.x, v.y), pick(v.x, v.y, v.z))
+}
+
+/// Whether the line of a ray passes within a convex outline of corners that are given in turn.
+#[derive(Clone, Copy)]
+struct Outline {
+    shear: Shear,
+    origin: DVec3,
+    last: DVec2,
+    left: bool,
+    right: bool,
+}
+
+impl Outline {
+    #[inline(always)]
+    fn new(origin: DVec3, dir: DVec3, last: DVec3) -> Self {
+        let shear = Shear::along(dir);
+        Self { shear, origin, last: shear.project(last - origin), left: false, right: false }
+    }
+
+    /// Takes the edge from the last corner to the next.
+    #[inline(always)]
+    fn next(&mut self, corner: DVec3) {
+        let (last, next) = (self.last, self.shear.project(corner - self.origin));
+        let side = difference_of_products(last.x, next.y, last.y, next.x);
+        self.left |= !(side >= 0.0); // NaN is both, and so a miss
+        self.right |= !(side <= 0.0);
+        self.last = next;
+    }
+
+    /// Not if it is on different sides of two edges, or the outline is seen edge-on.
+    #[inline(always)]
+    fn is_passed(&self) -> bool {
+        self.left != self.right
     }
 }
 
+/// Where a line meets the plane through `vertex` square to `normal`; NaN if it is in it: a closed surface has other faces to be
+/// hit there.
+#[inline(always)]
+fn parameter(vertex: DVec3, normal: DVec3, origin: DVec3, dir: DVec3) -> f64 {
+    let t = dot(normal, vertex - origin) / dot(normal, dir);
+    if t.is_finite() { t } else { f64::NAN }
+}
+
 /// The crossing of the line of `ray` with the convex polygon of `vertices`, whose plane is square to `normal`.
-///
-/// A ray in the plane is a miss: a closed surface has other faces to be hit there.
 #[inline(always)]
 pub(super) fn crossing(vertices: &[DVec3], normal: DVec3, ray: &Ray) -> Crossing {
     crossing_of(vertices, || normal, ray)
@@ -73,35 +116,54 @@ pub(super) fn crossing_of(
     normal: impl FnOnce() -> DVec3,
     ray: &Ray,
 ) -> Crossing {
-    let shear = Shear::along(ray.dir);
-    let seen = |v: &DVec3| shear.project(*v - ray.origin);
-    let mut last = seen(&vertices[vertices.len() - 1]);
-    let (mut left, mut right) = (false, false);
+    let mut outline = Outline::new(ray.origin, ray.dir, vertices[vertices.len() - 1]);
     for vertex in vertices {
-        let next = seen(vertex);
-        let side = difference_of_products(last.x, next.y, last.y, next.x);
-        left |= !(side >= 0.0); // NaN is both, and so a miss
-        right |= !(side <= 0.0);
-        last = next;
+        outline.next(*vertex);
     }
-    if left == right {
-        return Crossing::NONE; // on different sides of two edges, or the outline is seen edge-on
+    if !outline.is_passed() {
+        return Crossing::NONE;
     }
-    let normal = normal();
-    let t = dot(normal, vertices[0] - ray.origin) / dot(normal, ray.dir);
-    if t.is_finite() { Crossing::at(t) } else { Crossing::NONE }
+    Crossing::at(parameter(vertices[0], normal(), ray.origin, ray.dir))
 }
 
-/// The surface of the plane through `vertex` square to the unit vector `normal`, where `ray` meets it at `t`; `rest` is what
-/// rounding took from the ray's origin.
+/// The parameter of [`crossing`], or NaN; without a branch, for loops over lanes.
 #[inline(always)]
-pub(super) fn surface(vertex: DVec3, normal: DVec3, ray: &Ray, t: f64, rest: DVec3) -> Surface {
-    let (near, near_rest) = sum(ray.origin, ray.dir * t + rest);
+pub(super) fn crossing_parameter<const N: usize>(
+    vertices: &[DVec3; N],
+    normal: DVec3,
+    origin: DVec3,
+    dir: DVec3,
+) -> f64 {
+    let mut outline = Outline::new(origin, dir, vertices[N - 1]);
+    for vertex in vertices {
+        outline.next(*vertex);
+    }
+    let t = parameter(vertices[0], normal, origin, dir);
+    if outline.is_passed() { t } else { f64::NAN }
+}
+
+/// The surface of the plane through `vertex` square to the unit vector `normal`, where the ray along `dir` from `origin`
+/// meets it at `t`; `rest` is what rounding took from the origin. Without a branch, for loops over lanes.
+#[inline(always)]
+pub(super) fn surface(
+    (vertex, normal): (DVec3, DVec3),
+    origin: DVec3,
+    dir: DVec3,
+    t: f64,
+    rest: DVec3,
+) -> Surface {
+    let (near, near_rest) = sum(origin, dir * t + rest);
     let (away, away_rest) = sum(near, -vertex);
     let height = math::dot(normal, away) + dot(normal, away_rest + near_rest);
     // Back into the plane along the ray, where the exact point is.
-    let back = ray.dir * (height / math::dot(normal, ray.dir));
-    let back = if back.is_finite() { back } else { normal * height };
+    let back = height / math::dot(normal, dir);
+    let (back, straight) = (dir * back, normal * height);
+    let is_finite = (back.x.abs() < f64::INFINITY)
+        & (back.y.abs() < f64::INFINITY)
+        & (back.z.abs() < f64::INFINITY);
+    let pick = |x: f64, y: f64| if is_finite { x } else { y };
+    let back =
+        DVec3::new(pick(back.x, straight.x), pick(back.y, straight.y), pick(back.z, straight.z));
     let (point, point_rest) = sum(near, near_rest - back);
     let local = point - vertex;
     let error = Surface::error_bound(normal, point.abs() + local.abs());

@@ -95,14 +95,26 @@ impl Surface {
         16.0 * UNIT_ROUNDOFF * normal.abs().dot(lengths)
     }
 
+    /// Whether a ray along `dir` came here from the inside.
+    #[inline(always)]
+    pub fn is_met_from_inside(&self, dir: DVec3) -> bool {
+        !(self.normal.dot(dir) < 0.0)
+    }
+
+    /// The point moved along the normal by the error bound to the outside or, with `inward`, to the inside.
+    #[inline(always)]
+    pub(crate) fn beside(&self, inward: bool) -> DVec3 {
+        let offset = if inward { -self.error } else { self.error };
+        self.point + self.normal * offset
+    }
+
     /// The ray that leaves this point of `hit` along `dir`, to the outside or, with `inward`, to the inside.
     ///
     /// Its origin is moved along the normal to that side by the error bound, so that no other surface that touches
     /// here is met on the wrong side; its own surface is excluded by the [`Departure`].
     #[inline(always)]
     pub fn leave(&self, hit: &Hit, dir: DVec3, inward: bool) -> Ray {
-        let offset = if inward { -self.error } else { self.error };
-        let origin = self.point + self.normal * offset;
+        let origin = self.beside(inward);
         let from = Departure {
             primitive: hit.primitive,
             face: hit.face,

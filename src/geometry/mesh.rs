@@ -253,7 +253,7 @@ impl Face {
         let corners = self.vertices();
         let normal = doubled_area(&corners);
         let normal = scale::normalized(normal).0.normalize();
-        let mut surface = flat::surface(corners[0], normal, ray, t, rest);
+        let mut surface = flat::surface((corners[0], normal), ray.origin, ray.dir, t, rest);
         let Attributes { normals, uvs, tints } = &self.mesh.attributes;
         if normals.is_empty() && uvs.is_empty() && tints.is_empty() {
             return surface;

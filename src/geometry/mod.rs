@@ -12,6 +12,7 @@ pub mod cone;
 pub mod cylinder;
 pub mod flat;
 pub mod hit;
+pub mod lanes;
 pub mod mesh;
 pub mod polygon;
 pub mod quad;

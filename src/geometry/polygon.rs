@@ -82,6 +82,6 @@ impl Polygon {
 
     #[inline(always)]
     pub(crate) fn surface(&self, ray: &Ray, t: f64, rest: DVec3) -> Surface {
-        flat::surface(self.vertices[0], self.normal, ray, t, rest)
+        flat::surface((self.vertices[0], self.normal), ray.origin, ray.dir, t, rest)
     }
 }

@@ -52,12 +52,29 @@ impl Quad {
         [flat::crossing(&self.vertices, self.normal, ray), Crossing::NONE]
     }
 
+    /// The parameter of the crossing, or NaN.
+    #[inline(always)]
+    pub(super) fn parameter(&self, origin: DVec3, dir: DVec3) -> f64 {
+        flat::crossing_parameter(&self.vertices, self.normal, origin, dir)
+    }
+
     #[inline(always)]
     pub(crate) fn surface(&self, ray: &Ray, t: f64, rest: DVec3) -> Surface {
-        let mut surface = flat::surface(self.vertices[0], self.normal, ray, t, rest);
+        let surface = flat::surface(self.plane(), ray.origin, ray.dir, t, rest);
+        Surface { uv: self.uv(surface.local), ..surface }
+    }
+
+    /// The surface coordinates of a point, seen from the corner.
+    #[inline(always)]
+    pub(super) fn uv(&self, local: DVec3) -> DVec2 {
         let [u, v] = self.gradients;
-        surface.uv = DVec2::new(u.dot(surface.local), v.dot(surface.local));
-        surface
+        DVec2::new(u.dot(local), v.dot(local))
+    }
+
+    /// A point of the plane, and its unit normal.
+    #[inline(always)]
+    pub(super) fn plane(&self) -> (DVec3, DVec3) {
+        (self.vertices[0], self.normal)
     }
 
     /// By Cramer's rule, u = n·(s × e₂)/n·(e₁ × e₂) and v = n·(e₁ × s)/n·(e₁ × e₂) at s from the corner.

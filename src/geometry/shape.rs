@@ -1,11 +1,14 @@
 //! Every shape behind one type, with one `match` for each operation, and what makes a shape invalid.
 
+use std::ops::Range;
+
 use glam::DVec3;
 use thiserror::Error;
 
 use super::{
-    Bounds, Cone, Cylinder, Face, Polygon, Quad, Similarity, Sphere, Triangle,
+    Bounds, Cone, Cylinder, Face, Polygon, Quad, Similarity, Sphere, Triangle, flat,
     hit::{Crossing, Crossings, Hit, NO_CROSSINGS, Surface, first_ahead},
+    lanes::{Column, LANES, RayLanes, SurfaceLanes, hull, lanes},
     ray::{Departure, Ray},
 };
 use crate::math::scale;
@@ -177,6 +180,81 @@ impl Shape {
             Some(from) if from.primitive == primitive => self.crossings_from(ray, from),
             _ => self.crossings(ray),
         }
+    }
+
+    /// The parameters at which the lines of some `lanes` of rays cross the surface, in ascending order, NaN where they do not,
+    /// whatever surface they leave.
+    ///
+    /// Returns false, and does nothing, for shapes that are made for single rays.
+    #[inline(always)]
+    pub(crate) fn cross_lanes(
+        &self,
+        rays: &RayLanes,
+        lanes: Range<usize>,
+        [first, second]: &mut [Column; 2],
+    ) -> bool {
+        let lanes = lanes.start.min(LANES)..lanes.end.min(LANES);
+        let (origin, dir) = (rays.origin, rays.dir);
+        match self {
+            Self::Sphere(s) => {
+                for k in lanes {
+                    (first[k], second[k]) = s.parameters(origin.get(k), dir.get(k));
+                }
+            }
+            Self::Quad(s) => {
+                let shape = **s;
+                for k in lanes {
+                    (first[k], second[k]) = (shape.parameter(origin.get(k), dir.get(k)), f64::NAN);
+                }
+            }
+            Self::Triangle(s) => {
+                let shape = **s;
+                for k in lanes {
+                    (first[k], second[k]) = (shape.parameter(origin.get(k), dir.get(k)), f64::NAN);
+                }
+            }
+            _ => return false,
+        }
+        true
+    }
+
+    /// The surfaces where the rays of the lanes `met`, from free space, meet this shape at `t`; their own coordinates only
+    /// `with_uv`.
+    ///
+    /// Returns false, and does nothing, for shapes that are made for single rays.
+    #[inline(always)]
+    pub(crate) fn surface_lanes(
+        &self,
+        rays: &RayLanes,
+        t: &Column,
+        met: u64,
+        with_uv: bool,
+        surfaces: &mut SurfaceLanes,
+    ) -> bool {
+        let (origin, dir) = (rays.origin, rays.dir);
+        let plane = match self {
+            Self::Sphere(s) => {
+                for k in hull(met) {
+                    let q = origin.get(k) - s.center() + dir.get(k) * t[k];
+                    surfaces.set_if(k, met >> k & 1 != 0, &s.surface_at(q), dir.get(k));
+                }
+                if with_uv {
+                    lanes(met).for_each(|k| surfaces.uv[k] = Sphere::uv(surfaces.shading(k)));
+                }
+                return true;
+            }
+            Self::Quad(s) => s.plane(),
+            Self::Triangle(s) => s.plane(),
+            _ => return false,
+        };
+        for k in hull(met) {
+            let surface = flat::surface(plane, origin.get(k), dir.get(k), t[k], DVec3::ZERO);
+            surfaces.set_if(k, met >> k & 1 != 0, &surface, dir.get(k));
+        }
+        if let (Self::Quad(s), true) = (self, with_uv) {
+            lanes(met).for_each(|k| surfaces.uv[k] = s.uv(surfaces.local.get(k)));
+        }
+        true
     }
 
     /// The surface where `ray` meets this shape in `hit`.

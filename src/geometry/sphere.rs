@@ -56,18 +56,23 @@ impl Sphere {
     /// Gems* (2019), ch. 7; cross-product form.
     #[inline(always)]
     pub fn crossings(&self, ray: &Ray) -> Crossings {
-        let f = ray.origin - self.center;
-        let a = ray.dir.length_squared();
-        let (reach, offset) = (self.radius * a.sqrt(), cross(f, ray.dir).length());
+        let (t0, t1) = self.parameters(ray.origin, ray.dir);
+        [Crossing::at(t0), Crossing::at(t1)]
+    }
+
+    /// The parameters of the crossings, in ascending order; without a branch, for loops over lanes.
+    #[inline(always)]
+    pub(super) fn parameters(&self, origin: DVec3, dir: DVec3) -> (f64, f64) {
+        let f = origin - self.center;
+        let a = dir.length_squared();
+        let (reach, offset) = (self.radius * a.sqrt(), cross(f, dir).length());
         let gap = reach - offset;
-        if !(gap >= 0.0) {
-            return NO_CROSSINGS; // NaN is a miss
-        }
-        let b = f.dot(ray.dir);
+        let b = f.dot(dir);
         let distance = f.length();
         let c = (distance - self.radius) * (distance + self.radius);
-        let (t0, t1) = Roots::new(a, b, c, (gap * (reach + offset)).sqrt()).sorted();
-        [Crossing::at(t0), Crossing::at(t1)]
+        // A miss makes both parameters NaN.
+        let discriminant = if gap >= 0.0 { gap * (reach + offset) } else { f64::NAN };
+        Roots::new(a, b, c, discriminant.sqrt()).sorted()
     }
 
     /// The crossings of a ray that leaves this sphere: none outward, and one inward, whose parameter −2b/a needs no
@@ -86,12 +91,23 @@ impl Sphere {
     #[inline(always)]
     pub(crate) fn surface(&self, ray: &Ray, t: f64, own: Option<&Departure>) -> Surface {
         let start = own.map_or(ray.origin - self.center, |from| from.local);
-        let q = start + ray.dir * t;
-        let normal = scale::unit(q).unwrap_or(DVec3::Y); // a sphere of no size in the scene
+        let surface = self.surface_at(start + ray.dir * t);
+        Surface { uv: Self::uv(surface.normal), ..surface }
+    }
+
+    /// The surface in the direction `q` from the centre, without its own coordinates; and without a branch, for loops over lanes.
+    #[inline(always)]
+    pub(super) fn surface_at(&self, q: DVec3) -> Surface {
+        let normal = scale::unit_or(q, DVec3::Y); // a sphere may have no size in the scene
         let local = normal * self.radius;
         let point = self.center + local;
         let error = Surface::error_bound(normal, point.abs() + self.radius);
-        let uv = DVec2::new(normal.x, normal.y) * 0.5 + 0.5;
-        Surface { local, uv, ..Surface::plain(point, normal, error) }
+        Surface { local, ..Surface::plain(point, normal, error) }
+    }
+
+    /// The surface coordinates where the normal is this.
+    #[inline(always)]
+    pub(super) fn uv(normal: DVec3) -> DVec2 {
+        DVec2::new(normal.x, normal.y) * 0.5 + 0.5
     }
 }

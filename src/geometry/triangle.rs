@@ -44,8 +44,20 @@ impl Triangle {
         [flat::crossing(&self.vertices, self.normal, ray), Crossing::NONE]
     }
 
+    /// The parameter of the crossing, or NaN.
+    #[inline(always)]
+    pub(super) fn parameter(&self, origin: DVec3, dir: DVec3) -> f64 {
+        flat::crossing_parameter(&self.vertices, self.normal, origin, dir)
+    }
+
     #[inline(always)]
     pub(crate) fn surface(&self, ray: &Ray, t: f64, rest: DVec3) -> Surface {
-        flat::surface(self.vertices[0], self.normal, ray, t, rest)
+        flat::surface(self.plane(), ray.origin, ray.dir, t, rest)
+    }
+
+    /// A point of the plane, and its unit normal.
+    #[inline(always)]
+    pub(super) fn plane(&self) -> (DVec3, DVec3) {
+        (self.vertices[0], self.normal)
     }
 }

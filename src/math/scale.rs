@@ -40,6 +40,20 @@ pub fn unit(v: DVec3) -> Option<DVec3> {
     normalized(v).0.try_normalize()
 }
 
+/// The unit vector along `v`, or `other` if `v` is zero, subnormal or not finite; without a branch, for loops over lanes.
+#[inline(always)]
+pub(crate) fn unit_or(v: DVec3, other: DVec3) -> DVec3 {
+    let size = v.abs();
+    let largest = if size.x > size.y { size.x } else { size.y };
+    let largest = if largest > size.z { largest } else { size.z };
+    let exponent = largest.to_bits() >> 52; // biased
+    let w = v * f64::from_bits(2046_u64.wrapping_sub(exponent) << 52);
+    let unit = w * w.length_recip();
+    let is_ordinary = (1..2046).contains(&exponent);
+    let pick = |x: f64, y: f64| if is_ordinary { x } else { y };
+    DVec3::new(pick(unit.x, other.x), pick(unit.y, other.y), pick(unit.z, other.z))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -52,6 +66,20 @@ mod tests {
             assert_eq!(exponent(x), e);
             assert_eq!(exponent(-x), e);
             assert_eq!(exponent(x * 1.5), if e == -1074 { -1073 } else { e });
+        }
+    }
+
+    /// Oracle: [`unit`], which takes the same steps for numbers of any size.
+    #[test]
+    fn unit_or_is_unit_for_ordinary_vectors() {
+        for e in [-1021, -500, -1, 0, 1, 60, 1000] {
+            for v in [DVec3::new(0.3, -0.1, 0.9), DVec3::Z, DVec3::new(-1.7, 1e-9, 1.7)] {
+                let v = v * power_of_two(e);
+                assert_eq!(Some(unit_or(v, DVec3::NAN)), unit(v), "{v}");
+            }
+        }
+        for v in [DVec3::ZERO, DVec3::splat(5e-324), DVec3::new(f64::INFINITY, 1.0, 0.0)] {
+            assert_eq!(unit_or(v, DVec3::Y), DVec3::Y, "{v}");
         }
     }
 

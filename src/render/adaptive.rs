@@ -47,7 +47,12 @@ pub(super) struct Adaptive {
 
 impl Adaptive {
     /// Traces the centres of `area`, and of the pixels around it, so that a part of a picture is that of the whole.
-    pub(super) fn new<S: Sampler>(crew: &Crew<S>, area: &Area, width: u32, most: u32) -> Self {
+    pub(super) fn new<S: Sampler + Send>(
+        crew: &Crew<S>,
+        area: &Area,
+        width: u32,
+        most: u32,
+    ) -> Self {
         let centers = trace_centers(crew, &area.grown(1));
         let spent = centers.values().iter().map(|sample| u64::from(sample.rays)).sum();
         let colors = Mutex::new(Plane::new(*area, Rgb::ZERO));
@@ -61,8 +66,8 @@ impl Adaptive {
                 let window = Window::of_centers(tile, &centers);
                 let (own_pixels, own_colors): (Vec<_>, Vec<_>) = tile
                     .pixels()
-                    .map(|(x, y)| {
-                        let look = window.look(x, y);
+                    .zip(window.looks())
+                    .map(|((x, y), look)| {
                         let color = if look.inner {
                             corrected(&centers, x, y)
                         } else {
@@ -76,8 +81,8 @@ impl Adaptive {
                             } else {
                                 0
                             },
-                            contrast: if look.suspect { look.contrast } else { 0.0 },
-                            busy: if look.suspect { look.busy } else { 0.0 },
+                            contrast: look.contrast,
+                            busy: look.busy,
                             ..Pixel::default()
                         };
                         (pixel, color)
@@ -103,7 +108,7 @@ impl Adaptive {
     /// Gives every pixel above the threshold its next samples, until none is or all have the most they may get.
     ///
     /// When `stop` says so, the tiles that are left stay as they are.
-    pub(super) fn refine<S: Sampler>(
+    pub(super) fn refine<S: Sampler + Send>(
         &mut self,
         crew: &Crew<S>,
         threshold: Threshold,
@@ -162,7 +167,7 @@ impl Adaptive {
     }
 
     /// Traces the corners that pixels above the threshold will look at.
-    fn trace_corners<S: Sampler>(
+    fn trace_corners<S: Sampler + Send>(
         &mut self,
         crew: &Crew<S>,
         threshold: Threshold,

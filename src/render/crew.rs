@@ -72,7 +72,7 @@ pub(super) struct Scratch {
     pub(super) samples: Vec<Sample>,
 }
 
-impl<S: Sampler> Crew<'_, S> {
+impl<S: Sampler + Send> Crew<'_, S> {
     /// Lets the workers do `work` on every tile of `area`; `counted` is whether a tile's pixels count as done.
     ///
     /// Tiles for which `stop` says so are left out.
@@ -83,19 +83,27 @@ impl<S: Sampler> Crew<'_, S> {
         stop: impl Fn() -> bool + Sync,
         work: impl Fn(&mut S, &mut Scratch, &Area) + Sync,
     ) {
-        area.tiles().into_par_iter().with_max_len(1).for_each_init(
-            || ((self.new_sampler)(), Scratch::default()),
-            |(sampler, scratch), tile| {
-                if stop() {
-                    return;
-                }
-                work(sampler, scratch, &tile);
-                if counted {
-                    self.meter.add(tile.len() as u64);
-                }
-            },
-        );
+        let idle: Mutex<Vec<(S, Scratch)>> = Mutex::new(Vec::new());
+        let idle = || idle.lock().unwrap_or_else(PoisonError::into_inner);
+        each_tile(area, |tile| {
+            if stop() {
+                return;
+            }
+            let worker = idle().pop();
+            let (mut sampler, mut scratch) =
+                worker.unwrap_or_else(|| ((self.new_sampler)(), Scratch::default()));
+            work(&mut sampler, &mut scratch, tile);
+            idle().push((sampler, scratch));
+            if counted {
+                self.meter.add(tile.len() as u64);
+            }
+        });
     }
+}
+
+/// Does `work` on every tile of `area`, on all threads.
+pub(super) fn each_tile(area: &Area, work: impl Fn(&Area) + Sync) {
+    area.tiles().into_par_iter().with_max_len(1).for_each(|tile| work(&tile));
 }
 
 /// The pixels of a tile in Morton order, so that any run of them is close together and their rays go the same way.
@@ -124,7 +132,7 @@ pub(super) fn center(x: i64, y: i64) -> DVec2 {
 }
 
 /// Traces the centre of every pixel of the plane.
-pub(super) fn trace_centers<S: Sampler>(crew: &Crew<S>, area: &Area) -> Plane<Sample> {
+pub(super) fn trace_centers<S: Sampler + Send>(crew: &Crew<S>, area: &Area) -> Plane<Sample> {
     let centers = Mutex::new(Plane::new(*area, Sample::default()));
     crew.run(
         area,

@@ -34,7 +34,7 @@ fn at_step(step: u32) -> f32 {
 ///
 /// The threshold goes down a fixed ladder, and the picture is that of the threshold at which it ends: what is spent on the way is
 /// part of it.
-pub(super) fn reach_error<S: Sampler>(
+pub(super) fn reach_error<S: Sampler + Send>(
     adaptive: &mut Adaptive,
     crew: &Crew<S>,
     wanted: f64,
@@ -67,7 +67,7 @@ pub(super) fn reach_error<S: Sampler>(
 ///
 /// Each step takes a part of the time left, as predicted from the rays before; the pixels of the last one are taken by chance,
 /// so that no part of the picture is left out.
-pub(super) fn reach_time<S: Sampler>(
+pub(super) fn reach_time<S: Sampler + Send>(
     adaptive: &mut Adaptive,
     crew: &Crew<S>,
     (started, end): (Instant, Instant),

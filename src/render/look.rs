@@ -2,45 +2,101 @@
 
 use glam::Vec3;
 
-use super::plane::{Area, Plane};
+use super::plane::{Area, Plane, TILE_SIDE};
 use crate::{
     aa::{Sample, estimate::Look, levels::levels},
     color::Rgb,
 };
 
+/// The widest tile.
+const SIDE: usize = TILE_SIDE as usize;
+
 /// The centres of a tile and of the pixels around it, encoded; pixels outside of what is known repeat those at its edge.
 pub(super) struct Window {
-    levels: Vec<Vec3>,
+    /// Display levels, channel by channel.
+    levels: [Vec<f32>; 3],
     signatures: Vec<u32>,
     around: Area,
 }
 
 impl Window {
-    /// The window about `tile` of colours and signatures that are found by place.
-    pub(super) fn new(tile: &Area, mut at: impl FnMut(i64, i64) -> (Rgb, u32)) -> Self {
+    /// The window about `tile` of a plane, from whose entries `see` makes colours and signatures.
+    pub(super) fn new<T>(tile: &Area, plane: &Plane<T>, see: impl Fn(&T) -> (Rgb, u32)) -> Self {
         let around = tile.grown(1);
-        let (levels, signatures) = around
-            .pixels()
-            .map(|(x, y)| {
-                let (color, signature) = at(x, y);
-                (levels(color), signature)
-            })
-            .unzip();
-        Self { levels, signatures, around }
+        let mut window = Self {
+            levels: std::array::from_fn(|_| vec![0.0; around.len()]),
+            signatures: vec![0; around.len()],
+            around,
+        };
+        let mut place = 0;
+        for y in around.y0..around.y1 {
+            let row = plane.nearest_row(y);
+            for x in around.x0..around.x1 {
+                let (color, signature) = see(&row[plane.nearest_column(x)]);
+                let levels = levels(color);
+                window.levels[0][place] = levels.x;
+                window.levels[1][place] = levels.y;
+                window.levels[2][place] = levels.z;
+                window.signatures[place] = signature;
+                place += 1;
+            }
+        }
+        window
     }
 
     /// The window about `tile` of traced centres.
     pub(super) fn of_centers(tile: &Area, centers: &Plane<Sample>) -> Self {
-        Self::new(tile, |x, y| {
-            let sample = centers.nearest(x, y);
-            (sample.color, sample.signature)
-        })
+        Self::new(tile, centers, |sample| (sample.color, sample.signature))
     }
 
-    /// The look of a pixel of the tile.
-    pub(super) fn look(&self, x: i64, y: i64) -> Look {
+    /// The looks of the tile's pixels, row by row.
+    pub(super) fn looks(&self) -> Vec<Look> {
+        let (width, height) = (self.around.width(), self.around.height());
+        let mut looks = Vec::with_capacity((width - 2) * (height - 2));
+        for row in 1..height - 1 {
+            self.add_row(row * width, &mut looks);
+        }
+        looks
+    }
+
+    /// Adds the looks of the row whose first place in the window is `middle`.
+    fn add_row(&self, middle: usize, looks: &mut Vec<Look>) {
         let width = self.around.width();
-        let middle = (y - self.around.y0) as usize * width + (x - self.around.x0) as usize;
+        let pixels = (width - 2).min(SIDE);
+        let (mut curve, mut slope) = ([0.0; SIDE], [0.0; SIDE]);
+        let rows = [middle - width, middle, middle + width].map(|start| start..start + width);
+        for channel in &self.levels {
+            let [above, at, below] = rows.clone().map(|row| &channel[row]);
+            for k in 0..pixels {
+                let (west, here, east) = (at[k], at[k + 1], at[k + 2]);
+                let (north, south) = (above[k + 1], below[k + 1]);
+                let across = west + east - 2.0 * here;
+                let down = north + south - 2.0 * here;
+                curve[k] += across * across + down * down;
+                slope[k] += (west - east) * (west - east) + (north - south) * (north - south);
+            }
+        }
+        let mut differ = [0; SIDE];
+        let centers = &self.signatures[middle + 1..];
+        for row in rows {
+            let signatures = &self.signatures[row];
+            for k in 0..pixels {
+                let of = |place: usize| signatures[place] ^ centers[k];
+                differ[k] |= of(k) | of(k + 1) | of(k + 2);
+            }
+        }
+        looks.extend((0..pixels).map(|k| {
+            if differ[k] == 0 {
+                Look::smooth(curve[k] / 3.0, slope[k] / 3.0)
+            } else {
+                self.look(middle + 1 + k)
+            }
+        }));
+    }
+
+    /// The look of the pixel at a place of the window.
+    fn look(&self, middle: usize) -> Look {
+        let width = self.around.width();
         let places = [
             middle - width - 1,
             middle - width,
@@ -52,7 +108,9 @@ impl Window {
             middle + width,
             middle + width + 1,
         ];
-        Look::at(&places.map(|place| self.levels[place]), &places.map(|p| self.signatures[p]))
+        let [red, green, blue] = &self.levels;
+        let levels = |place: usize| Vec3::new(red[place], green[place], blue[place]);
+        Look::at(&places.map(levels), &places.map(|place| self.signatures[place]))
     }
 }
 

@@ -180,7 +180,7 @@ impl Picture {
 /// The part `part` of a picture `width` pixels wide, of whatever `new_sampler`'s samplers see; each worker thread has its own.
 ///
 /// Every pixel depends on its place in the whole picture and on what is seen within a pixel's width around it, never on `part`.
-pub fn picture<S: Sampler>(
+pub fn picture<S: Sampler + Send>(
     part: &Tile,
     width: u32,
     aa: AntiAliasing,
@@ -192,7 +192,7 @@ pub fn picture<S: Sampler>(
 }
 
 /// The same; a picture towards an error or until a time ends as it is when `stop` says so.
-fn picture_until<S: Sampler>(
+fn picture_until<S: Sampler + Send>(
     part: &Tile,
     width: u32,
     (aa, goal): (AntiAliasing, Goal),
@@ -302,7 +302,6 @@ pub fn render_blocks(
         let new_sampler = || Worker {
             tracer: Tracer::new(scene, depth),
             view,
-            rays: Vec::new(),
             traced: Vec::new(),
             thin: thin.as_ref(),
             counts: &rays,

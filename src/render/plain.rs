@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use super::{
     Outcome, Picture,
-    crew::{Crew, Sampler, in_turn, trace_centers},
+    crew::{Crew, Sampler, each_tile, in_turn, trace_centers},
     look::Window,
     plane::{Area, Plane},
 };
@@ -27,20 +27,14 @@ use crate::{
 const BATCH: usize = 64;
 
 /// One ray through each centre.
-pub(super) fn centers<S: Sampler>(crew: &Crew<S>, area: &Area) -> Picture {
+pub(super) fn centers<S: Sampler + Send>(crew: &Crew<S>, area: &Area) -> Picture {
     let centers = trace_centers(crew, area);
     let errors = Mutex::new(Plane::new(*area, 0.0));
-    crew.run(
-        area,
-        false,
-        || false,
-        |_, _, tile| {
-            let window = Window::of_centers(tile, &centers);
-            let own: Vec<f32> =
-                tile.pixels().map(|(x, y)| window.look(x, y).center_error(false)).collect();
-            errors.lock().unwrap_or_else(PoisonError::into_inner).put(tile, own);
-        },
-    );
+    each_tile(area, |tile| {
+        let window = Window::of_centers(tile, &centers);
+        let own: Vec<f32> = window.looks().iter().map(|look| look.center_error(false)).collect();
+        errors.lock().unwrap_or_else(PoisonError::into_inner).put(tile, own);
+    });
     Picture {
         colors: centers.into_values().into_iter().map(|sample| sample.color).collect(),
         samples: vec![1; area.len()],
@@ -61,7 +55,7 @@ struct Cell {
 }
 
 /// A grid of `side` × `side` rays through each pixel.
-pub(super) fn grid<S: Sampler>(crew: &Crew<S>, area: &Area, side: u32) -> Picture {
+pub(super) fn grid<S: Sampler + Send>(crew: &Crew<S>, area: &Area, side: u32) -> Picture {
     let places = |x: i64, y: i64, places: &mut Vec<DVec2>| {
         places.extend(grid_places(DVec2::new(x as f64, y as f64), side));
     };
@@ -74,7 +68,12 @@ pub(super) fn grid<S: Sampler>(crew: &Crew<S>, area: &Area, side: u32) -> Pictur
 }
 
 /// `count` rays of a sequence through each pixel of a picture `width` pixels wide.
-pub(super) fn sequence<S: Sampler>(crew: &Crew<S>, area: &Area, width: u32, count: u32) -> Picture {
+pub(super) fn sequence<S: Sampler + Send>(
+    crew: &Crew<S>,
+    area: &Area,
+    width: u32,
+    count: u32,
+) -> Picture {
     let places = |x: i64, y: i64, places: &mut Vec<DVec2>| {
         let sequence = Sequence::of_pixel(y as u64 * u64::from(width) + x as u64, 1);
         let corner = DVec2::new(x as f64, y as f64);
@@ -86,7 +85,7 @@ pub(super) fn sequence<S: Sampler>(crew: &Crew<S>, area: &Area, width: u32, coun
 
 /// `count` rays through each pixel at the places that `pixel_places` adds to a list. `judge` tells the squared error of their
 /// mean; where they are alike, `unseen` of the contrast to the neighbours is added.
-fn even<S: Sampler>(
+fn even<S: Sampler + Send>(
     crew: &Crew<S>,
     area: &Area,
     count: u32,
@@ -132,26 +131,16 @@ fn even<S: Sampler>(
     );
     let cells = cells.into_inner().unwrap_or_else(PoisonError::into_inner);
     let errors = Mutex::new(Plane::new(*area, 0.0));
-    crew.run(
-        area,
-        false,
-        || false,
-        |_, _, tile| {
-            let window = Window::new(tile, |x, y| {
-                let cell = cells.nearest(x, y);
-                (cell.color, cell.signature)
-            });
-            let own: Vec<f32> = tile
-                .pixels()
-                .map(|(x, y)| {
-                    let (cell, look) = (cells.at(x, y), window.look(x, y));
-                    let hidden = cell.alike && look.suspect;
-                    cell.error + if hidden { unseen * look.contrast } else { 0.0 }
-                })
-                .collect();
-            errors.lock().unwrap_or_else(PoisonError::into_inner).put(tile, own);
-        },
-    );
+    each_tile(area, |tile| {
+        let window = Window::new(tile, &cells, |cell| (cell.color, cell.signature));
+        let looks = window.looks();
+        let own = tile.pixels().zip(&looks).map(|((x, y), look)| {
+            let cell = cells.at(x, y);
+            let hidden = cell.alike && look.suspect;
+            cell.error + if hidden { unseen * look.contrast } else { 0.0 }
+        });
+        errors.lock().unwrap_or_else(PoisonError::into_inner).put(tile, own.collect::<Vec<_>>());
+    });
     Picture {
         colors: cells.values().iter().map(|cell| cell.color).collect(),
         samples: vec![rays; area.len()],

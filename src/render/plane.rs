@@ -3,7 +3,7 @@
 use crate::film::{Tile, tiles};
 
 /// The side of a tile in pixels: small enough to share the work out evenly, large enough to cost nothing by itself.
-const TILE_SIDE: u32 = 16;
+pub(super) const TILE_SIDE: u32 = 16;
 
 /// A rectangle of pixels, half open, in columns and rows of the whole picture; those of its apron have -1 and width or height.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,6 +111,18 @@ impl<T> Plane<T> {
     #[inline]
     pub(super) fn nearest(&self, x: i64, y: i64) -> &T {
         self.at(x.clamp(self.area.x0, self.area.x1 - 1), y.clamp(self.area.y0, self.area.y1 - 1))
+    }
+
+    /// The row that is nearest to `y`.
+    pub(super) fn nearest_row(&self, y: i64) -> &[T] {
+        let start = self.area.place_of(self.area.x0, y.clamp(self.area.y0, self.area.y1 - 1));
+        &self.values[start..start + self.area.width()]
+    }
+
+    /// The place in a row that is nearest to `x`.
+    #[inline]
+    pub(super) fn nearest_column(&self, x: i64) -> usize {
+        (x.clamp(self.area.x0, self.area.x1 - 1) - self.area.x0) as usize
     }
 
     pub(super) fn values(&self) -> &[T] {

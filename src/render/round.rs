@@ -157,7 +157,7 @@ impl Round<'_> {
     }
 
     /// Gives the pixels that want them the samples of their next stage; returns whether there was time for all.
-    pub(super) fn give<S: Sampler>(
+    pub(super) fn give<S: Sampler + Send>(
         &self,
         tile: &Area,
         wanting: &[usize],

@@ -9,7 +9,6 @@ use crate::{
     aa::Sample,
     camera::View,
     color::Rgb,
-    geometry::Ray,
     trace::{self, BATCH, Tracer},
 };
 
@@ -17,7 +16,6 @@ use crate::{
 pub(super) struct Worker<'a> {
     pub(super) tracer: Tracer<'a>,
     pub(super) view: View,
-    pub(super) rays: Vec<Ray>,
     pub(super) traced: Vec<trace::Sample>,
     /// The least samples of pixels with something thin, if there are any.
     pub(super) thin: Option<&'a Plane<u32>>,
@@ -35,9 +33,8 @@ impl Sampler for Worker<'_> {
 
     fn sample(&mut self, places: &[DVec2], samples: &mut Vec<Sample>) {
         for some in places.chunks(BATCH) {
-            self.rays.clear();
-            self.rays.extend(some.iter().map(|place| self.view.ray(*place)));
-            self.tracer.trace(&self.rays, &mut self.traced);
+            let dirs = some.iter().map(|place| self.view.direction(*place));
+            self.tracer.trace(self.view.eye(), dirs, &mut self.traced);
             samples.extend(self.traced.iter().map(|traced| Sample {
                 // A NaN, which no valid scene has, would be black.
                 color: traced.color.max(Rgb::ZERO).min(Rgb::ONE),

@@ -2,12 +2,14 @@
 //!
 //! The recursion is a work list of rays, each with the weight of its answer in its sample and its level, so the call
 //! stack stays flat however deep it goes. Rays are taken from the end of the list in batches of one level: those of a
-//! batch are traced together, then lit together light by light, because rays that start or end in one point
+//! batch are traced together, then lit together light by light (module `lit`), because rays that start or end in one point
 //! are cheaper together. What a sample becomes does not depend on the batches: its parts are summed in fixed
 //! point (module `sum`), where order does not matter.
 
 pub mod classic;
 mod counts;
+mod lit;
+mod onward;
 mod shadow;
 mod signature;
 mod sum;
@@ -17,19 +19,24 @@ use glam::DVec3;
 use crate::{
     accel::Work,
     color::Rgb,
-    geometry::{Hit, Ray, Surface, reflect, refract},
-    light::Light,
+    geometry::{
+        Hit, Ray, Surface,
+        lanes::{HitLanes, LANES, RayLanes, Vectors, lanes},
+    },
     material::Material,
     scene::Scene,
-    texture::TexturePoint,
 };
 pub use counts::RayCounts;
-use shadow::Shadows;
+use lit::Lit;
+use onward::{mirrored, transmitted};
 use signature::{Branch, Path};
 use sum::Sum;
 
 /// How many rays are traced together.
-pub const BATCH: usize = 64;
+pub const BATCH: usize = LANES;
+
+/// Fewer hits of a primitive than this are as fast one by one.
+const FEWEST: u32 = 3;
 
 /// What one place on the film shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,22 +75,6 @@ impl Task {
     }
 }
 
-/// A hit that shows its own colour, while the lights are added.
-#[derive(Clone, Copy, Debug)]
-struct Lit<'a> {
-    /// Its ray's place in the batch.
-    ray: usize,
-    hit: Hit,
-    surface: Surface,
-    material: &'a Material,
-    /// The side that the ray came from: whether that is the inside.
-    inside: bool,
-    /// The light that the texture scatters, and the highlights.
-    diffuse: Rgb,
-    specular: Rgb,
-    path: Path,
-}
-
 /// What a sample gathers.
 #[derive(Clone, Copy, Debug, Default)]
 struct Gathered {
@@ -101,38 +92,45 @@ impl Gathered {
     }
 }
 
+/// The rays that are traced together, a lane for each, and what they are for.
+#[derive(Debug)]
+struct Batch {
+    tasks: Vec<Task>,
+    /// The rays by themselves, unless they come from the camera.
+    rays: Vec<Ray>,
+    origin: Vectors,
+    dir: Vectors,
+    hits: HitLanes,
+}
+
 /// Traces rays through a scene; each worker has its own.
 #[derive(Debug)]
 pub struct Tracer<'a> {
     scene: &'a Scene,
     depth: u32,
     counts: RayCounts,
-    shadows: Shadows<'a>,
     /// The work list: rays, and what each is for.
     rays: Vec<Ray>,
     tasks: Vec<Task>,
-    // Scratch that is kept from batch to batch: the rays taken from the list, and what becomes of them.
-    batch_rays: Vec<Ray>,
-    batch: Vec<Task>,
-    hits: Vec<Option<Hit>>,
-    lit: Vec<Lit<'a>>,
+    /// The rays taken from the list, and what becomes of them; in boxes, because they are large.
+    batch: Box<Batch>,
+    lit: Box<Lit>,
     gathered: Vec<Gathered>,
 }
 
 impl<'a> Tracer<'a> {
     /// A tracer that casts no ray of a level above `depth`, camera rays having level 1.
     pub fn new(scene: &'a Scene, depth: u32) -> Self {
+        let (origin, dir) = (Vectors::ZERO, Vectors::ZERO);
+        let (tasks, rays) = (Vec::new(), Vec::new());
         Self {
             scene,
             depth,
             counts: RayCounts::default(),
-            shadows: Shadows::new(scene),
             rays: Vec::new(),
             tasks: Vec::new(),
-            batch_rays: Vec::new(),
-            batch: Vec::new(),
-            hits: Vec::new(),
-            lit: Vec::new(),
+            batch: Box::new(Batch { tasks, rays, origin, dir, hits: HitLanes::NONE }),
+            lit: Box::new(Lit::new()),
             gathered: Vec::new(),
         }
     }
@@ -142,18 +140,30 @@ impl<'a> Tracer<'a> {
         self.counts
     }
 
-    /// What the camera rays `rays`, of one origin and in the scene's own coordinates, show; `samples` gets one for each.
-    pub(crate) fn trace(&mut self, rays: &[Ray], samples: &mut Vec<Sample>) {
+    /// What up to [`BATCH`] camera rays from `eye` along `dirs`, in the scene's own coordinates, show; `samples` gets one for each.
+    pub(crate) fn trace(
+        &mut self,
+        eye: DVec3,
+        dirs: impl ExactSizeIterator<Item = DVec3>,
+        samples: &mut Vec<Sample>,
+    ) {
+        let count = dirs.len().min(BATCH);
         self.gathered.clear();
-        self.gathered.resize(rays.len(), Gathered::default());
+        self.gathered.resize(count, Gathered::default());
         if self.depth > 0 {
-            self.counts.camera += rays.len() as u64;
-            self.rays.extend(rays);
-            let camera = |sample| Task { weight: Rgb::ONE, level: 1, sample, path: Path::START };
-            self.tasks.extend((0..rays.len() as u32).map(camera));
+            self.counts.camera += count as u64;
+            let batch = &mut *self.batch;
+            for (k, dir) in dirs.take(BATCH).enumerate() {
+                batch.origin.set(k, eye);
+                batch.dir.set(k, dir);
+            }
+            batch.tasks.clear();
+            let task = |sample| Task { weight: Rgb::ONE, level: 1, sample, path: Path::START };
+            batch.tasks.extend((0..count as u32).map(task));
+            self.scene.accel().run(Run(self));
         }
         while self.take_batch() {
-            self.scene.accel().run(Batch(self));
+            self.scene.accel().run(Run(self));
         }
         samples.clear();
         let sample =
@@ -167,132 +177,134 @@ impl<'a> Tracer<'a> {
         let of_level =
             self.tasks.iter().rev().take(BATCH).take_while(|task| task.level == last.level);
         let start = self.tasks.len() - of_level.count();
-        self.batch.clear();
-        self.batch.extend(self.tasks.drain(start..));
-        self.batch_rays.clear();
-        self.batch_rays.extend(self.rays.drain(start..));
+        let batch = &mut *self.batch;
+        batch.tasks.clear();
+        batch.tasks.extend(self.tasks.drain(start..));
+        batch.rays.clear();
+        batch.rays.extend(self.rays.drain(start..));
+        for (k, ray) in batch.rays.iter().enumerate() {
+            batch.dir.set(k, ray.dir);
+        }
         true
     }
 
     #[inline(always)]
     fn trace_batch(&mut self) {
-        self.hits.clear();
-        self.hits.resize(self.batch.len(), None);
-        let is_camera = self.batch[0].level == 1;
+        let (scene, batch) = (self.scene, &mut *self.batch);
+        let is_camera = batch.tasks[0].level == 1;
+        let used = u64::MAX >> (LANES - batch.tasks.len());
         if is_camera {
-            self.scene.accel().nearest_packet(&self.batch_rays, &mut self.hits);
+            let rays = RayLanes { origin: &batch.origin, dir: &batch.dir, from: None, used };
+            scene.accel().nearest_packet(&rays, &mut batch.hits);
         } else {
-            for (ray, hit) in self.batch_rays.iter().zip(&mut self.hits) {
-                *hit = self.scene.accel().nearest(ray, f64::INFINITY);
+            batch.hits.t = [f64::INFINITY; LANES];
+            for (k, ray) in batch.rays.iter().enumerate() {
+                if let Some(hit) = scene.accel().nearest(ray, f64::INFINITY) {
+                    batch.hits.set(k, &hit);
+                }
             }
         }
-        for k in 0..self.batch.len() {
-            if let Some(hit) = self.hits[k] {
-                self.counts.camera_hit += u64::from(is_camera);
-                self.meet(k, &hit);
-            } else {
-                let signature = self.batch[k].path.background();
-                self.gather(k, self.scene.background(), signature);
-            }
+        let hit = used & batch.hits.found();
+        if is_camera {
+            self.counts.camera_hit += u64::from(hit.count_ones());
         }
-        let scene = self.scene;
-        for light in scene.lights() {
-            self.add_light(light);
+        for k in lanes(used & !hit) {
+            let task = &self.batch.tasks[k];
+            let light = task.weight * scene.background();
+            self.gathered[task.sample as usize].add(light, task.path.background());
         }
+        self.lit.clear();
+        let mut open = hit;
+        while open != 0 {
+            let primitive = self.batch.hits.primitive[open.trailing_zeros() as usize];
+            let same = self.batch.hits.alike(open);
+            open &= !same;
+            self.meet(primitive, same, is_camera);
+        }
+        self.light();
         self.show();
     }
 
+    /// Takes the hits of one primitive in the lanes `same`: finds the surfaces there, puts what comes to them by reflection and
+    /// transmission on the list, and themselves among those to be lit.
     #[inline(always)]
-    fn gather(&mut self, ray: usize, light: Rgb, signature: u32) {
-        let task = &self.batch[ray];
-        self.gathered[task.sample as usize].add(task.weight * light, signature);
-    }
-
-    /// Puts what comes to the hit of ray `index` by reflection and transmission on the list, and the hit itself among those
-    /// to be lit.
-    #[inline(always)]
-    fn meet(&mut self, index: usize, hit: &Hit) {
-        let (scene, task) = (self.scene, self.batch[index]);
-        let (ray, material) = (&self.batch_rays[index], scene.material(hit.primitive));
-        // The surface is put where it stays; it is large.
-        self.lit.push(Lit {
-            ray: index,
-            hit: *hit,
-            surface: scene.surface(ray, hit),
-            material,
-            inside: false,
-            diffuse: Rgb::splat(material.ambient),
-            specular: Rgb::ZERO,
-            path: task.path,
-        });
-        let Some(lit) = self.lit.last_mut() else { return };
-        let (surface, dir) = (&lit.surface, ray.dir);
-        let inside = !(surface.normal.dot(dir) < 0.0);
-        (lit.inside, lit.path) = (inside, task.path.hit(hit, inside));
-        if task.level < self.depth {
-            let counts = |weight: Rgb| (task.weight * weight).max_element() >= scene.cutoff();
-            let mirror = Rgb::splat(material.reflection);
-            let only_transmits = inside && material.is_transmissive();
-            if material.reflection > 0.0 && !only_transmits && counts(mirror) {
-                self.counts.reflected += 1;
-                self.rays.push(surface.leave(hit, mirrored(dir, surface, inside), inside));
-                self.tasks.push(task.child(mirror, Branch::Reflected));
-            }
-            if material.is_transmissive()
-                && counts(material.transmission)
-                && let Some(onward) =
-                    transmitted(&mut self.counts, dir, surface, material.ior, inside)
-            {
-                self.rays.push(surface.leave(hit, onward, !inside));
-                self.tasks.push(task.child(material.transmission, Branch::Transmitted));
+    fn meet(&mut self, primitive: u32, same: u64, is_camera: bool) {
+        let scene = self.scene;
+        let (shape, material) = (scene.shape(primitive), scene.material(primitive));
+        let batch = &*self.batch;
+        let together = is_camera && same.count_ones() >= FEWEST && {
+            let rays = RayLanes { origin: &batch.origin, dir: &batch.dir, from: None, used: same };
+            let with_uv = material.texture.needs_uv();
+            shape.surface_lanes(&rays, &batch.hits.t, same, with_uv, &mut self.lit.surfaces)
+        };
+        let goes_on = material.reflection > 0.0 || material.is_transmissive();
+        if !together || goes_on {
+            for k in lanes(same) {
+                let hit = self.batch.hits.get(k);
+                let ray = if is_camera {
+                    Ray::new(self.batch.origin.get(k), self.batch.dir.get(k))
+                } else {
+                    self.batch.rays[k]
+                };
+                let surface = shape.surface(&ray, &hit);
+                if !together {
+                    self.lit.surfaces.set(k, shape, &surface, ray.dir);
+                }
+                if goes_on {
+                    self.go_on(k, ray.dir, &hit, &surface, material);
+                }
             }
         }
-        if inside && material.is_transmissive() {
+        self.lit.take(same, &self.batch, material);
+        if material.is_transmissive() {
             // From within, a body only transmits.
-            let signature = lit.path.signature();
-            self.lit.pop();
-            self.gather(index, Rgb::ZERO, signature);
+            for k in lanes(same) {
+                if self.lit.surfaces.is_inside(k) {
+                    self.lit.leave_out(k);
+                    let sample = self.batch.tasks[k].sample;
+                    self.gathered[sample as usize].add(Rgb::ZERO, self.lit.signature(k));
+                }
+            }
         }
     }
 
-    /// Adds what one light gives to the hits of the batch that face it.
+    /// Puts the rays that a surface reflects and transmits on the list.
     #[inline(always)]
-    fn add_light(&mut self, light: &Light) {
-        self.shadows.clear();
-        for (lit, index) in self.lit.iter().zip(0..) {
-            let away = light.position - lit.surface.point;
-            let to_light = away.normalize();
-            let cosine = lit.normal().dot(to_light);
-            if cosine > 0.0 {
-                let mut ray = lit.surface.leave(&lit.hit, away, lit.inside);
-                let shape = self.scene.shape(lit.hit.primitive);
-                let offset = shape.shadow_offset(&lit.surface, lit.inside);
-                if offset != DVec3::ZERO {
-                    ray.origin += offset;
-                }
-                ray.dir = light.position - ray.origin; // so that the light is at t = 1
-                self.shadows.push(index, ray, to_light, cosine);
-                self.gathered[self.batch[lit.ray].sample as usize].rays += 1;
-            }
+    fn go_on(&mut self, k: usize, dir: DVec3, hit: &Hit, surface: &Surface, material: &Material) {
+        let (scene, task) = (self.scene, self.batch.tasks[k]);
+        if task.level >= self.depth {
+            return;
         }
-        self.counts.shadow += self.shadows.len() as u64;
-        for shadow in self.shadows.cast(light.position) {
-            let lit = &mut self.lit[shadow.index as usize];
-            if shadow.transmittance == Rgb::ZERO {
-                continue;
+        let inside = surface.is_met_from_inside(dir);
+        let counts = |weight: Rgb| (task.weight * weight).max_element() >= scene.cutoff();
+        let mirror = Rgb::splat(material.reflection);
+        let only_transmits = inside && material.is_transmissive();
+        if material.reflection > 0.0 && !only_transmits && counts(mirror) {
+            self.counts.reflected += 1;
+            self.rays.push(surface.leave(hit, mirrored(dir, surface, inside), inside));
+            self.tasks.push(task.child(mirror, Branch::Reflected));
+        }
+        if material.is_transmissive()
+            && counts(material.transmission)
+            && let Some(onward) = transmitted(&mut self.counts, dir, surface, material.ior, inside)
+        {
+            self.rays.push(surface.leave(hit, onward, !inside));
+            self.tasks.push(task.child(material.transmission, Branch::Transmitted));
+        }
+    }
+
+    /// Adds what the lights give to the hits that face them.
+    #[inline(always)]
+    fn light(&mut self) {
+        let (scene, batch) = (self.scene, &*self.batch);
+        for light in scene.lights() {
+            let asked = self.lit.face(light, &batch.dir);
+            self.counts.shadow += u64::from(asked.count_ones());
+            for k in lanes(asked) {
+                self.gathered[batch.tasks[k].sample as usize].rays += 1;
             }
-            lit.path = lit.path.light(light, shadow.passed);
-            let arriving = light.intensity * shadow.transmittance;
-            lit.diffuse += arriving * (lit.material.diffuse * shadow.cosine as f32);
-            if lit.material.specular > 0.0 {
-                // The mirror direction, d − 2 (d·n) n, against the direction of the light.
-                let dir = self.batch_rays[lit.ray].dir;
-                let highlight =
-                    dir.dot(shadow.to_light) - 2.0 * dir.dot(lit.normal()) * shadow.cosine;
-                if highlight > 0.0 {
-                    let shine = highlight.powf(lit.material.shininess) as f32;
-                    lit.specular += arriving * (lit.material.specular * shine);
-                }
+            if asked != 0 {
+                self.lit.add(scene, light, &batch.hits, asked);
             }
         }
     }
@@ -300,78 +312,21 @@ impl<'a> Tracer<'a> {
     /// Gives the colours of the lit hits to their samples.
     #[inline(always)]
     fn show(&mut self) {
-        for lit in &self.lit {
-            let Lit { material, mut path, .. } = *lit;
-            let mut light = lit.specular;
-            if lit.diffuse != Rgb::ZERO && material.opacity > 0.0 {
-                let at = TexturePoint { uv: lit.surface.uv, point: lit.surface.point };
-                let (color, cell) = material.texture.at(&at);
-                light += lit.diffuse * color * lit.surface.tint * material.opacity;
-                path = path.cell(cell);
-            }
-            let task = &self.batch[lit.ray];
-            self.gathered[task.sample as usize].add(task.weight * light, path.signature());
+        for k in lanes(self.lit.lanes()) {
+            let task = &self.batch.tasks[k];
+            let material = self.scene.material(self.batch.hits.primitive[k]);
+            let (light, signature) = self.lit.show(k, material);
+            self.gathered[task.sample as usize].add(task.weight * light, signature);
         }
-        self.lit.clear();
     }
-}
-
-/// The direction in which a ray goes on behind a surface, and counts it; `None` if it is totally reflected, which transmits
-/// nothing.
-#[inline(always)]
-fn transmitted(
-    counts: &mut RayCounts,
-    dir: DVec3,
-    surface: &Surface,
-    ior: f64,
-    inside: bool,
-) -> Option<DVec3> {
-    if ior == 1.0 {
-        counts.transmitted += 1;
-        return Some(dir);
-    }
-    let (from, to) = if inside { (ior, 1.0) } else { (1.0, ior) };
-    let refracted = refracted(dir, surface, inside, from, to)?;
-    counts.refracted += 1;
-    Some(refracted)
 }
 
 /// The batch that a tracer has taken, to be traced.
-struct Batch<'t, 'a>(&'t mut Tracer<'a>);
+struct Run<'t, 'a>(&'t mut Tracer<'a>);
 
-impl Work for Batch<'_, '_> {
+impl Work for Run<'_, '_> {
     #[inline(always)]
     fn run(self) {
         self.0.trace_batch();
     }
-}
-
-impl Lit<'_> {
-    /// The shading normal on the side that the ray came from.
-    fn normal(&self) -> DVec3 {
-        if self.inside { -self.surface.shading } else { self.surface.shading }
-    }
-}
-
-/// The mirror direction of `dir` by the shading normal. Where that points below the surface, as it may at a grazing view
-/// of a coarse mesh, it is mirrored up again.
-fn mirrored(dir: DVec3, surface: &Surface, inside: bool) -> DVec3 {
-    let side = if inside { -1.0 } else { 1.0 };
-    let onward = reflect(dir, surface.shading * side);
-    if surface.shading != surface.normal && !(onward.dot(surface.normal) * side > 0.0) {
-        return reflect(onward, surface.normal * side);
-    }
-    onward
-}
-
-/// The refracted direction by the shading normal, or by the surface's own where the other faces away from the ray or
-/// sends it back to its side; `None` if it is totally reflected.
-fn refracted(dir: DVec3, surface: &Surface, inside: bool, from: f64, to: f64) -> Option<DVec3> {
-    let side = if inside { -1.0 } else { 1.0 };
-    let (normal, shading) = (surface.normal * side, surface.shading * side);
-    if shading == normal || !(dir.dot(shading) < 0.0) {
-        return refract(dir, normal, from, to);
-    }
-    let onward = refract(dir, shading, from, to)?;
-    if onward.dot(normal) < 0.0 { Some(onward) } else { refract(dir, normal, from, to) }
 }

@@ -3,7 +3,7 @@
 //! Each hit is hashed with the branches that led to it; a sample's signature is the sum over its hits, which does not depend
 //! on the order they come in.
 
-use crate::{geometry::Hit, light::Light};
+use crate::light::Light;
 
 /// How a ray came from its parent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,27 +19,34 @@ pub(super) struct Path(u32);
 impl Path {
     pub(super) const START: Self = Self(0x9e37_79b9);
 
+    /// The path with this signature so far.
+    #[inline(always)]
+    pub(super) fn of(signature: u32) -> Self {
+        Self(signature)
+    }
+
+    #[inline(always)]
     fn mix(self, word: u32) -> Self {
         Self(hash(self.0 ^ word.wrapping_mul(0x85eb_ca6b)))
     }
 
+    #[inline(always)]
     pub(super) fn branch(self, branch: Branch) -> Self {
         self.mix(1 + branch as u32)
     }
 
-    pub(super) fn hit(self, hit: &Hit, inside: bool) -> Self {
-        self.mix(hit.primitive).mix(u32::from(hit.face) << 1 | u32::from(inside))
+    #[inline(always)]
+    pub(super) fn hit(self, primitive: u32, face: u8, inside: bool) -> Self {
+        self.mix(primitive).mix(u32::from(face) << 1 | u32::from(inside))
     }
 
-    /// A light that arrives, through bodies whose crossings hash to `passed`.
-    pub(super) fn light(self, light: &Light, passed: u32) -> Self {
-        let position = light.position.to_array().map(f64::to_bits);
-        let word = position
-            .into_iter()
-            .fold(passed, |word, bits| word.rotate_left(7) ^ (bits >> 21) as u32);
+    /// A light that arrives, by its [`light_word`].
+    #[inline(always)]
+    pub(super) fn light(self, word: u32) -> Self {
         self.mix(word)
     }
 
+    #[inline(always)]
     pub(super) fn cell(self, cell: u32) -> Self {
         self.mix(cell)
     }
@@ -53,9 +60,17 @@ impl Path {
     }
 }
 
+/// What stands for a light that arrives through bodies whose crossings hash to `passed`.
+#[inline(always)]
+pub(super) fn light_word(light: &Light, passed: u32) -> u32 {
+    let position = light.position.to_array().map(f64::to_bits);
+    position.into_iter().fold(passed, |word, bits| word.rotate_left(7) ^ (bits >> 21) as u32)
+}
+
 /// A hash of 32 bits in which every bit depends on all.
 ///
 /// Source: Wellons, "Prospecting for Hash Functions" (2018), `lowbias32`.
+#[inline(always)]
 pub(super) fn hash(mut x: u32) -> u32 {
     x ^= x >> 16;
     x = x.wrapping_mul(0x7feb_352d);

@@ -10,8 +10,20 @@ use super::{
 };
 use crate::{
     accel::{Accel, Isa},
-    geometry::{Hit, Ray, Shape},
+    geometry::{
+        Crossing, Hit, Ray, Shape, Surface,
+        lanes::{Departures, HitLanes, LANES, RayLanes, SurfaceLanes, Vectors, lanes},
+    },
 };
+
+/// Lanes, spread over all there are as far as that is possible, for so many rays.
+fn spread(count: usize) -> Vec<usize> {
+    (0..count).map(|k| k * (LANES / count) + (k * 5) % (LANES / count)).collect()
+}
+
+fn bits_of(used: &[usize]) -> u64 {
+    used.iter().fold(0, |all, lane| all | 1 << lane)
+}
 
 /// A beam of `count` rays from `origin` around `axis`, so wide at distance 1.
 fn beam(random: &mut Random, origin: DVec3, axis: DVec3, width: f64, count: usize) -> Vec<Ray> {
@@ -22,11 +34,23 @@ fn beam(random: &mut Random, origin: DVec3, axis: DVec3, width: f64, count: usiz
 fn check(name: &str, accel: &Accel, rays: &[Ray]) -> usize {
     let single: Vec<Option<Hit>> =
         rays.iter().map(|ray| accel.nearest(ray, f64::INFINITY)).collect();
-    let mut hits = vec![None; rays.len()];
-    accel.nearest_packet(rays, &mut hits);
-    for (k, (found, expected)) in hits.iter().zip(&single).enumerate() {
+    let used = spread(rays.len());
+    // What is in the other lanes must not matter.
+    let mut nothing = Vectors::ZERO;
+    (0..LANES).for_each(|k| nothing.set(k, DVec3::splat([f64::NAN, 1e300, 0.0, -1.0][k % 4])));
+    let (mut origin, mut dir) = (nothing.clone(), nothing.clone());
+    for (lane, ray) in used.iter().zip(rays) {
+        origin.set(*lane, ray.origin);
+        dir.set(*lane, ray.dir);
+    }
+    let mut hits = HitLanes::NONE;
+    let rays_out = RayLanes { origin: &origin, dir: &dir, from: None, used: bits_of(&used) };
+    accel.nearest_packet(&rays_out, &mut hits);
+    assert_eq!(hits.found() & !bits_of(&used), 0, "{name}: a hit of no ray");
+    for (k, (lane, expected)) in used.iter().zip(&single).enumerate() {
+        let found = (hits.t[*lane] < f64::INFINITY).then(|| hits.get(*lane));
         assert_eq!(
-            bits(*found),
+            bits(found),
             bits(*expected),
             "{name}, ray {k} of {}: {:?}",
             rays.len(),
@@ -35,37 +59,70 @@ fn check(name: &str, accel: &Accel, rays: &[Ray]) -> usize {
     }
 
     let target = rays[0].origin;
-    let back: Vec<Ray> = rays
-        .iter()
-        .zip(&single)
-        .filter_map(|(ray, hit)| {
-            let hit = hit.as_ref()?;
-            let surface = accel.shape(hit.primitive).surface(ray, hit);
-            let to_target = target - surface.point;
-            let mut back = surface.leave(hit, to_target, to_target.dot(surface.normal) < 0.0);
-            back.dir = target - back.origin;
-            Some(back)
-        })
-        .collect();
+    let (mut start, mut way) = (nothing.clone(), nothing);
+    let (mut hits, mut surfaces) = (HitLanes::NONE, SurfaceLanes::NONE);
+    let mut back: Vec<(usize, Ray)> = Vec::new();
+    for (lane, (ray, hit)) in used.iter().zip(rays.iter().zip(&single)) {
+        let Some(hit) = hit else { continue };
+        let shape = accel.shape(hit.primitive);
+        let surface: Surface = shape.surface(ray, hit);
+        let inside = surface.is_met_from_inside(ray.dir);
+        let mut leaving = surface.leave(hit, target - surface.point, inside);
+        leaving.dir = target - leaving.origin;
+        hits.set(*lane, hit);
+        surfaces.set(*lane, shape, &surface, ray.dir);
+        start.set(*lane, leaving.origin);
+        way.set(*lane, leaving.dir);
+        back.push((*lane, leaving));
+    }
+    check_surfaces(accel, &rays_out, &hits, &surfaces);
+    let from = Some(Departures { hits: &hits, surfaces: &surfaces });
+    let asked = back.iter().fold(0, |all, (lane, _)| all | 1 << lane);
+    let rays_back = RayLanes { origin: &start, dir: &way, from, used: asked };
     for opaque in [|_: u32| false, |number: u32| number.is_multiple_of(5), |_: u32| true] {
-        let mut found = vec![Vec::new(); back.len()];
-        let mut blocked = vec![false; back.len()];
-        let visit = |k: u32, primitive, crossing: crate::geometry::Crossing| {
-            found[k as usize].push((primitive, crossing.t.to_bits(), crossing.face));
+        let mut found = vec![Vec::new(); LANES];
+        let visit = |lane: usize, primitive, crossing: Crossing| {
+            found[lane].push((primitive, crossing.t.to_bits(), crossing.face));
             ControlFlow::Continue(())
         };
-        accel.is_blocked_packet(&back, target, opaque, visit, &mut blocked);
-        for (k, ray) in back.iter().enumerate() {
+        let blocked = accel.blocked_packet(&rays_back, target, opaque, visit);
+        assert_eq!(blocked & !asked, 0, "{name}: a shadow of no ray");
+        for (lane, ray) in &back {
             let expected = accel.is_blocked(ray, 1.0, opaque, |_, _| ControlFlow::Continue(()));
-            assert_eq!(blocked[k], expected, "{name}, shadow {k}: {ray:?}");
+            assert_eq!(blocked >> lane & 1 != 0, expected, "{name}, shadow {lane}: {ray:?}");
             if !expected {
-                found[k].sort_unstable();
+                found[*lane].sort_unstable();
                 let all = crossings(|visit| accel.any_crossing(ray, 1.0, visit));
-                assert_eq!(found[k], all, "{name}, shadow {k}: {ray:?}");
+                assert_eq!(found[*lane], all, "{name}, shadow {lane}: {ray:?}");
             }
         }
     }
     back.len()
+}
+
+/// Checks that surfaces found in lanes are those found one by one.
+fn check_surfaces(accel: &Accel, rays: &RayLanes, hits: &HitLanes, expected: &SurfaceLanes) {
+    let mut open = rays.used & hits.found();
+    let mut found = SurfaceLanes::NONE;
+    while open != 0 {
+        let shape = accel.shape(hits.primitive[open.trailing_zeros() as usize]);
+        let same = hits.alike(open);
+        open &= !same;
+        if shape.surface_lanes(rays, &hits.t, same, true, &mut found) {
+            for k in lanes(same) {
+                let bits = |all: &SurfaceLanes| {
+                    let vectors = [&all.point, &all.local, &all.facing, &all.start];
+                    let uv = if shape.has_uv() { all.uv[k].to_array() } else { [0.0; 2] };
+                    (
+                        vectors.map(|v| v.get(k).to_array().map(f64::to_bits)),
+                        uv.map(f64::to_bits),
+                        all.is_inside(k),
+                    )
+                };
+                assert_eq!(bits(&found), bits(expected), "{shape:?}: {:?}", rays.ray(k));
+            }
+        }
+    }
 }
 
 /// Oracle: the single rays, which the other tests compare with brute force.

@@ -1,0 +1,179 @@
+//! The hits of a batch that show their own colour, while the lights are added; a lane for each.
+
+use super::{
+    Batch, shadow,
+    shadow::Passed,
+    signature::{self, Path},
+};
+use crate::{
+    color::Rgb,
+    geometry::lanes::{
+        Column, Departures, HitLanes, LANES, RayLanes, SurfaceLanes, Vectors, hull, lanes,
+    },
+    light::Light,
+    material::Material,
+    scene::Scene,
+    texture::TexturePoint,
+};
+
+/// A number in single precision for each lane.
+type Singles = [f32; LANES];
+
+/// Hits and the light that they get.
+#[derive(Debug)]
+pub(super) struct Lit {
+    /// The lanes in use.
+    lanes: u64,
+    pub(super) surfaces: SurfaceLanes,
+    path: [u32; LANES],
+    /// The light that the texture scatters, and the highlights, channel by channel.
+    diffuse: [Singles; 3],
+    specular: [Singles; 3],
+    /// The materials' weights of the two, and the exponent of the highlights.
+    scatter: Singles,
+    shine: Singles,
+    exponent: Column,
+    /// Towards the light at hand: the way from where rays start, the cosine of its angle to the normal, and to the mirror direction.
+    toward: Vectors,
+    cosine: Column,
+    mirrored: Column,
+    passed: Passed,
+}
+
+impl Lit {
+    pub(super) fn new() -> Self {
+        let zero = [0.0; LANES];
+        Self {
+            lanes: 0,
+            surfaces: SurfaceLanes::NONE,
+            path: [0; LANES],
+            diffuse: [zero; 3],
+            specular: [zero; 3],
+            scatter: zero,
+            shine: zero,
+            exponent: [0.0; LANES],
+            toward: Vectors::ZERO,
+            cosine: [0.0; LANES],
+            mirrored: [0.0; LANES],
+            passed: Passed::default(),
+        }
+    }
+
+    pub(super) fn lanes(&self) -> u64 {
+        self.lanes
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.lanes = 0;
+    }
+
+    /// Adds the hits of one primitive, whose surfaces are known.
+    #[inline(always)]
+    pub(super) fn take(&mut self, same: u64, batch: &Batch, material: &Material) {
+        self.lanes |= same;
+        let shine = if material.specular > 0.0 { material.specular } else { 0.0 };
+        for k in lanes(same) {
+            let (hits, inside) = (&batch.hits, self.surfaces.is_inside(k));
+            self.path[k] =
+                batch.tasks[k].path.hit(hits.primitive[k], hits.face[k], inside).signature();
+            self.scatter[k] = material.diffuse;
+            self.shine[k] = shine;
+            self.exponent[k] = material.shininess;
+            for channel in 0..3 {
+                self.diffuse[channel][k] = material.ambient;
+                self.specular[channel][k] = 0.0;
+            }
+        }
+    }
+
+    /// Takes out the hit of a lane.
+    pub(super) fn leave_out(&mut self, k: usize) {
+        self.lanes &= !(1 << k);
+    }
+
+    /// The signature of the hit of a lane so far.
+    pub(super) fn signature(&self, k: usize) -> u32 {
+        self.path[k]
+    }
+
+    /// Turns to a light; returns the lanes that face it, hit by rays along `dir`.
+    #[inline(always)]
+    pub(super) fn face(&mut self, light: &Light, dir: &Vectors) -> u64 {
+        let range = hull(self.lanes);
+        for k in range.clone() {
+            let to_light = (light.position - self.surfaces.point.get(k)).normalize();
+            let (facing, dir) = (self.surfaces.facing.get(k), dir.get(k));
+            let cosine = facing.dot(to_light);
+            self.cosine[k] = cosine;
+            // The mirror direction, d − 2 (d·n) n, against the direction of the light.
+            self.mirrored[k] = dir.dot(to_light) - 2.0 * dir.dot(facing) * cosine;
+            // So that the light is at t = 1.
+            self.toward.set(k, light.position - self.surfaces.start.get(k));
+        }
+        let faces = |k: usize| u64::from(self.cosine[k] > 0.0) << k;
+        range.fold(0, |all, k| all | faces(k)) & self.lanes
+    }
+
+    /// Adds what arrives of a light at the hits that face it, if nothing opaque is between.
+    #[inline(always)]
+    pub(super) fn add(&mut self, scene: &Scene, light: &Light, hits: &HitLanes, asked: u64) {
+        let from = Some(Departures { hits, surfaces: &self.surfaces });
+        let origin = &self.surfaces.start;
+        let rays = RayLanes { origin, dir: &self.toward, from, used: asked };
+        let seen = asked & !shadow::cast(scene, &rays, light.position, &mut self.passed);
+        let clear = seen & !self.passed.lanes();
+        let word = signature::light_word(light, 0);
+        for k in hull(clear) {
+            let is_clear = clear >> k & 1 != 0;
+            let path = Path::of(self.path[k]).light(word).signature();
+            self.path[k] = if is_clear { path } else { self.path[k] };
+            let scattered = self.scatter[k] * self.cosine[k] as f32;
+            for (channel, intensity) in self.diffuse.iter_mut().zip(light.intensity.to_array()) {
+                let sum = channel[k] + intensity * scattered;
+                channel[k] = if is_clear { sum } else { channel[k] };
+            }
+        }
+        for k in lanes(clear) {
+            self.add_highlight(k, light.intensity);
+        }
+        for k in lanes(seen & self.passed.lanes()) {
+            let (transmittance, passed) = self.passed.through(scene, k);
+            if transmittance == Rgb::ZERO {
+                continue;
+            }
+            let word = signature::light_word(light, passed);
+            self.path[k] = Path::of(self.path[k]).light(word).signature();
+            let arriving = light.intensity * transmittance;
+            let scattered = self.scatter[k] * self.cosine[k] as f32;
+            for (channel, arriving) in self.diffuse.iter_mut().zip(arriving.to_array()) {
+                channel[k] += arriving * scattered;
+            }
+            self.add_highlight(k, arriving);
+        }
+    }
+
+    #[inline(always)]
+    fn add_highlight(&mut self, k: usize, arriving: Rgb) {
+        if self.shine[k] > 0.0 && self.mirrored[k] > 0.0 {
+            let shine = self.shine[k] * self.mirrored[k].powf(self.exponent[k]) as f32;
+            for (channel, arriving) in self.specular.iter_mut().zip(arriving.to_array()) {
+                channel[k] += arriving * shine;
+            }
+        }
+    }
+
+    /// The light that the hit of a lane gives back, and its signature.
+    #[inline(always)]
+    pub(super) fn show(&self, k: usize, material: &Material) -> (Rgb, u32) {
+        let lane = |channels: &[Singles; 3]| Rgb::from_array(channels.each_ref().map(|c| c[k]));
+        let (diffuse, mut light) = (lane(&self.diffuse), lane(&self.specular));
+        let mut path = Path::of(self.path[k]);
+        if diffuse != Rgb::ZERO && material.opacity > 0.0 {
+            let at = TexturePoint { uv: self.surfaces.uv[k], point: self.surfaces.point.get(k) };
+            let (color, cell) = material.texture.at(&at);
+            light += diffuse * color * self.surfaces.tint[k] * material.opacity;
+            path = path.cell(cell);
+        }
+        (light, path.signature())
+    }
+}
