@@ -73,34 +73,39 @@ pub(crate) fn run(order: &Order, args: &RenderArgs) -> Result<Finished, Failure>
     Ok(Finished { rendering: job.into_rendering(&effort), write })
 }
 
+/// Writes a line that is not an error, unless nobody or only a program reads it.
+fn note(args: &RenderArgs, line: &str) {
+    if !args.quiet && args.progress != ProgressMode::Json {
+        streams::note(line);
+    }
+}
+
 /// The checkpoint to go on from, if that is wanted and there is one.
 fn find(job: &Job, path: &Path, args: &RenderArgs) -> Result<Option<Checkpoint>, Failure> {
-    let note = |text: String| {
-        if !args.quiet && args.progress != ProgressMode::Json {
-            streams::note(&text);
-        }
-    };
     match (path.exists(), args.resume) {
         (false, false) => Ok(None),
         (false, true) => {
-            note(format!(
-                "{}: there is no checkpoint; starting from the beginning",
-                path.display()
-            ));
+            note(
+                args,
+                &format!("{}: there is no checkpoint; starting from the beginning", path.display()),
+            );
             Ok(None)
         }
         (true, false) => {
-            note(format!(
-                "warning: {} is left from an interrupted render; --resume goes on from it (without, its name gets .old at \
+            note(
+                args,
+                &format!(
+                    "warning: {} is left from an interrupted render; --resume goes on from it (without, its name gets .old at \
                  the first new checkpoint)",
-                path.display()
-            ));
+                    path.display()
+                ),
+            );
             Ok(None)
         }
         (true, true) => match job.resume(path) {
             Ok(checkpoint) => {
                 let percent = 100.0 * job.share_done();
-                note(format!("going on from {} with {percent:.0} % done", path.display()));
+                note(args, &format!("going on from {} with {percent:.0} % done", path.display()));
                 Ok(Some(checkpoint))
             }
             Err(error @ CheckpointError::Read { .. }) => Err(error.into()),
@@ -127,7 +132,7 @@ fn render(
                 guard = wake.wait_timeout(guard, WATCH).unwrap_or_else(PoisonError::into_inner).0;
                 if stop.load(Ordering::Relaxed) && !has_told && !*guard {
                     has_told = true;
-                    streams::note("stopping: blocks in work are finished; once more stops at once");
+                    note(args, "stopping: blocks in work are finished; once more stops at once");
                 }
                 if *guard || last.elapsed() < interval {
                     continue;
@@ -139,7 +144,7 @@ fn render(
                 if let Err(error) = &saved
                     && !has_failed
                 {
-                    streams::note(&format!("warning: no checkpoint for now: {error}"));
+                    note(args, &format!("warning: no checkpoint for now: {error}"));
                 }
                 has_failed = saved.is_err();
                 guard = ended.lock().unwrap_or_else(PoisonError::into_inner);

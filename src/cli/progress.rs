@@ -338,8 +338,8 @@ mod tests {
 
     #[test]
     fn openjd_lines_are_a_percentage_and_a_status() {
-        let written = lines_of(ProgressMode::Openjd, 0.0, &[(1.5, 25), (1.6, 26), (2.0, 100)]);
-        assert_eq!(written[0], "openjd_progress: 25.0\nopenjd_status: 167 kpixels/s, 4 s left");
+        let written = lines_of(ProgressMode::Openjd, 0.0, &[(2.0, 25), (2.1, 26), (2.5, 100)]);
+        assert_eq!(written[0], "openjd_progress: 25.0\nopenjd_status: 125 kpixels/s, 6 s left");
         assert!(written[1].starts_with("openjd_progress: 100.0\n"), "{written:?}");
     }
 
