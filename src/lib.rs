@@ -9,7 +9,7 @@
 //! [`material::Material`], coloured by a [`texture::Texture`], say how light leaves it; rays towards every
 //! [`light::Light`] ask what stands between; and reflected and refracted rays, each knowing the surface it leaves, join the work list of
 //! [`trace::Tracer`]. What comes back is averaged over the pixel in linear light, put on the [`film::Film`] and
-//! encoded at the very end.
+//! encoded at the very end. Pictures are rendered block by block, and a [`checkpoint`] keeps the finished ones of a render that is stopped.
 //!
 //! A [`scene::Scene`] is made from a [`scene::SceneDesc`], which is plain data, read from TOML.
 //!
@@ -23,7 +23,7 @@
 //! let rendering = render::render(&scene, &options, &|_| ())?;
 //!
 //! let mut png = Vec::new();
-//! film::encode::write_png(&rendering.film, &mut png)?;
+//! film::write_png(&rendering.film, None, &mut png)?;
 //! assert!(rendering.rays.camera > 60 * 60 && rendering.estimated_rmse < 4.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -72,6 +72,7 @@
 pub mod aa;
 pub mod accel;
 pub mod camera;
+pub mod checkpoint;
 pub mod classic;
 pub mod color;
 pub mod film;

@@ -170,7 +170,10 @@ fn bad_values_are_refused_on_one_line_before_anything_is_written() {
         (&["--objects", "-5"], &["--objects", whole]),
         (&["--objects", "50000001"], &["--objects", "50000000"]),
         (&["--objects", "7"], &["assignment", "fixed number", "spheres"]),
-        (&["--progress", "plan"], &["--progress", "auto, bar, plain, json, none", "'plain'"]),
+        (
+            &["--progress", "plan"],
+            &["--progress", "auto, bar, plain, json, openjd, none", "'plain'"],
+        ),
         (&["--sise", "8x8"], &["--sise", "'--size'"]),
         (&["--output"], &["--output"]),
         (&["--quiet", "--quiet"], &["--quiet"]),

@@ -95,7 +95,7 @@ fn study(name: String, scene: &Scene) -> Frame {
 fn difference(a: &Rendering, b: &Rendering) -> f64 {
     let bytes = |r: &Rendering| {
         let mut png = vec![];
-        whitted::film::encode::write_png(&r.film, &mut png).expect("memory");
+        whitted::film::write_png(&r.film, None, &mut png).expect("memory");
         image::load_from_memory(&png).expect("a picture").to_rgb8().into_raw()
     };
     let (a, b) = (bytes(a), bytes(b));

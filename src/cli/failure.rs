@@ -21,8 +21,14 @@ enum Exit {
     Scene = 3,
     /// What would be a warning is an error, as the user wished.
     Strict = 4,
+    /// A checkpoint, or the parts of a picture, do not belong together.
+    Mismatch = 5,
     /// Two pictures differ by more than they may.
     OverLimit = 6,
+    /// Ctrl-C.
+    Interrupted = 130,
+    /// SIGTERM.
+    Terminated = 143,
 }
 
 /// Why a command did not do what it should; displays as one line.
@@ -36,6 +42,29 @@ impl Failure {
     /// A fault in how the command was called.
     pub(crate) fn usage(error: impl Into<anyhow::Error>) -> Self {
         Self { exit: Exit::Usage, error: error.into() }
+    }
+
+    /// A checkpoint of another picture, or parts that do not make one.
+    pub(crate) fn mismatch(error: impl Into<anyhow::Error>) -> Self {
+        Self { exit: Exit::Mismatch, error: error.into() }
+    }
+
+    /// A render that a signal ended; `text` goes on from "interrupted".
+    pub(crate) fn stopped(signal: u8, text: &str) -> Self {
+        let (exit, word) = match signal {
+            2 => (Exit::Interrupted, "interrupted"),
+            _ => (Exit::Terminated, "terminated"),
+        };
+        Self { exit, error: anyhow::anyhow!("{word} {text}") }
+    }
+
+    /// The line for the user.
+    pub(crate) fn line(&self) -> String {
+        match self.exit {
+            // Who stops a render knows; what was kept is on lines of its own.
+            Exit::Interrupted | Exit::Terminated => self.error.to_string(),
+            _ => format!("error: {self}"),
+        }
     }
 
     /// Pictures that differ by more than they may.

@@ -3,15 +3,22 @@
 mod args;
 mod compare;
 mod failure;
+mod finished;
 mod inspect;
 mod inspect_scene;
+mod job;
 mod memory;
+mod merge;
+mod options;
+mod parse;
 mod progress;
 mod render;
 mod scenes;
+mod signals;
 mod stats;
 mod streams;
 mod study;
+mod target;
 
 use std::process::ExitCode;
 use std::time::Instant;
@@ -30,6 +37,7 @@ pub(crate) fn run() -> ExitCode {
             Command::Compare(args) => compare::run(args),
             Command::Study(args) => study::run(args),
             Command::Inspect(args) => inspect::run(args),
+            Command::Merge(args) => merge::run(args),
             Command::Scenes(args) => scenes::run(args),
         },
         Err(error) if error.use_stderr() => Err(Failure::from_clap(&error)),
@@ -38,7 +46,7 @@ pub(crate) fn run() -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            streams::note(&format!("error: {failure}"));
+            streams::note(&failure.line());
             failure.exit_code()
         }
     }

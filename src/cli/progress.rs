@@ -1,7 +1,7 @@
 //! How far a render is, on standard error.
 
 use std::io::{self, IsTerminal, Write};
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle, TermLike};
@@ -12,9 +12,18 @@ use super::streams;
 
 const PLAIN_INTERVAL: Duration = Duration::from_secs(5);
 const JSON_INTERVAL: Duration = Duration::from_millis(100);
+const OPENJD_INTERVAL: Duration = Duration::from_secs(1);
+const BAR_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Tells the user how far a render is; to be called from any thread.
-pub(crate) enum Reporter {
+pub(crate) struct Reporter {
+    kind: Kind,
+    /// Pixels of the picture.
+    pixels: f64,
+    clock: Mutex<Clock>,
+}
+
+enum Kind {
     /// Says nothing.
     Silent,
     /// A bar that draws itself anew.
@@ -23,115 +32,185 @@ pub(crate) enum Reporter {
     Lines(Lines),
 }
 
+/// When and from where the render went on.
+struct Clock {
+    started: Instant,
+    /// The share that was done then.
+    share: f64,
+    /// When something was shown last, and how far the render was.
+    last: (Instant, u64),
+}
+
 impl Reporter {
-    /// A reporter whose time runs from now; it shows nothing until the first report.
-    pub(crate) fn new(mode: ProgressMode) -> Self {
+    /// A reporter of a picture of so many pixels, whose time runs from now; it shows nothing until the first report.
+    pub(crate) fn new(mode: ProgressMode, pixels: f64) -> Self {
         let terminal = io::stderr().is_terminal();
-        match mode {
-            ProgressMode::None => Self::Silent,
-            ProgressMode::Auto | ProgressMode::Bar if terminal => {
-                Self::bar(ProgressDrawTarget::stderr())
+        let can_draw = std::env::var_os("TERM").is_none_or(|name| name != "dumb");
+        let kind = match mode {
+            ProgressMode::None => Kind::Silent,
+            ProgressMode::Auto if terminal && can_draw => bar(ProgressDrawTarget::stderr()),
+            ProgressMode::Bar if terminal => bar(ProgressDrawTarget::stderr()),
+            ProgressMode::Bar => bar(ProgressDrawTarget::term_like(Box::new(AnyStderr))),
+            ProgressMode::Auto | ProgressMode::Plain => Kind::Lines(Lines {
+                format: plain_line,
+                interval: PLAIN_INTERVAL,
+                tells_end: false,
+            }),
+            ProgressMode::Json => {
+                Kind::Lines(Lines { format: json_line, interval: JSON_INTERVAL, tells_end: true })
             }
-            ProgressMode::Bar => Self::bar(ProgressDrawTarget::term_like(Box::new(AnyStderr))),
-            ProgressMode::Auto | ProgressMode::Plain => {
-                Self::Lines(Lines::new(plain_line, PLAIN_INTERVAL, false))
-            }
-            ProgressMode::Json => Self::Lines(Lines::new(json_line, JSON_INTERVAL, true)),
-        }
+            ProgressMode::Openjd => Kind::Lines(Lines {
+                format: openjd_lines,
+                interval: OPENJD_INTERVAL,
+                tells_end: true,
+            }),
+        };
+        let started = Instant::now();
+        Self { kind, pixels, clock: Mutex::new(Clock { started, share: 0.0, last: (started, 0) }) }
     }
 
-    fn bar(target: ProgressDrawTarget) -> Self {
-        let bar = ProgressBar::with_draw_target(None, target);
-        let style = ProgressStyle::with_template("{wide_bar} {percent:>3} %, {eta} left");
-        bar.set_style(style.expect("a template indicatif knows"));
-        Self::Bar(bar)
+    /// The render begins now, and a share of it was done before.
+    pub(crate) fn begin(&self, share: f64) {
+        let mut clock = self.clock.lock().unwrap_or_else(PoisonError::into_inner);
+        *clock = Clock { started: Instant::now(), share, ..*clock };
     }
 
     /// Takes note of a report from the render.
     pub(crate) fn report(&self, progress: &Progress) {
-        match self {
-            Self::Silent => {}
-            Self::Bar(bar) => {
-                if bar.length() != Some(progress.total) {
-                    bar.set_length(progress.total);
-                }
-                // Reports of several threads may overtake each other.
-                if progress.done > bar.position() {
-                    bar.set_position(progress.done);
+        let due = |interval, tells_end| self.due(progress, interval, tells_end, Instant::now());
+        match &self.kind {
+            Kind::Silent => {}
+            Kind::Bar(bar) => {
+                if let Some(report) = due(BAR_INTERVAL, true) {
+                    bar.set_length(report.total);
+                    bar.set_position(report.done);
+                    bar.set_message(bar_text(&report));
                 }
             }
-            Self::Lines(lines) => lines.report(progress),
+            Kind::Lines(lines) => {
+                if let Some(report) = due(lines.interval, lines.tells_end) {
+                    streams::note(&(lines.format)(&report));
+                }
+            }
         }
     }
+
+    /// Takes the bar away, to make room for what is said at the end.
+    pub(crate) fn end(&self) {
+        if let Kind::Bar(bar) = &self.kind {
+            bar.finish_and_clear();
+        }
+    }
+
+    /// The report due at the moment `now`, if any; `tells_end` is whether the last one comes although the pause is not over.
+    fn due(
+        &self,
+        progress: &Progress,
+        interval: Duration,
+        tells_end: bool,
+        now: Instant,
+    ) -> Option<Report> {
+        let &Progress { done, total } = progress;
+        // A thread that died while it held the lock left numbers that are still good.
+        let mut clock = self.clock.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_end = tells_end && done >= total;
+        let is_due = now.saturating_duration_since(clock.last.0) >= interval;
+        // Reports of several threads may overtake each other.
+        if done <= clock.last.1 || !(is_due || is_end) {
+            return None;
+        }
+        clock.last = (now, done);
+        let elapsed = now.saturating_duration_since(clock.started).as_secs_f64();
+        let share = done as f64 / total.max(1) as f64;
+        Some(Report {
+            done,
+            total,
+            share,
+            elapsed,
+            fresh: share - clock.share,
+            pixels: self.pixels,
+        })
+    }
+}
+
+fn bar(target: ProgressDrawTarget) -> Kind {
+    let bar = ProgressBar::with_draw_target(None, target);
+    let color = if streams::wants_color() { ":.cyan" } else { "" };
+    let template = format!("{{wide_bar{color}}} {{percent:>3}} %  {{msg}}");
+    let style = ProgressStyle::with_template(&template);
+    bar.set_style(style.expect("a template indicatif knows"));
+    Kind::Bar(bar)
 }
 
 /// The bar goes when the render ends, however it ends, to make room for what is said then.
 impl Drop for Reporter {
     fn drop(&mut self) {
-        if let Self::Bar(bar) = self {
-            bar.finish_and_clear();
-        }
+        self.end();
     }
 }
 
 /// Progress as lines with a pause between them.
-pub(crate) struct Lines {
+struct Lines {
     format: fn(&Report) -> String,
     interval: Duration,
-    /// Whether the last report becomes a line although the pause is not over.
     tells_end: bool,
-    started: Instant,
-    /// When the last line came, and how far it said the render was.
-    last: Mutex<(Instant, u64)>,
 }
 
-/// One line's content.
+/// What is told.
 struct Report {
     done: u64,
     total: u64,
+    /// The share that is done.
+    share: f64,
+    /// The share that was done in the time since this program began.
+    fresh: f64,
+    /// That time, in seconds.
     elapsed: f64,
+    pixels: f64,
 }
 
 impl Report {
-    /// Seconds until the end if the rest takes its time like what is done; unknown at the start.
+    /// Seconds until the end if the rest takes its time like what was done; unknown at the start.
     fn seconds_left(&self) -> Option<f64> {
-        let left = self.total.saturating_sub(self.done) as f64;
-        (self.done > 0).then(|| self.elapsed * left / self.done as f64)
+        (self.fresh > 0.0).then(|| self.elapsed * (1.0 - self.share).max(0.0) / self.fresh)
+    }
+
+    /// Pixels a second.
+    fn rate(&self) -> f64 {
+        if self.elapsed > 0.0 { self.pixels * self.fresh.max(0.0) / self.elapsed } else { 0.0 }
     }
 }
 
-impl Lines {
-    fn new(format: fn(&Report) -> String, interval: Duration, tells_end: bool) -> Self {
-        let started = Instant::now();
-        Self { format, interval, tells_end, started, last: Mutex::new((started, 0)) }
+/// A time as people read it.
+fn duration(seconds: f64) -> String {
+    let whole = seconds.round() as u64;
+    match (whole / 3600, whole / 60 % 60, whole % 60) {
+        (0, 0, s) => format!("{s} s"),
+        (0, m, s) => format!("{m} min {s:02} s"),
+        (h, m, _) => format!("{h} h {m:02} min"),
     }
+}
 
-    fn report(&self, progress: &Progress) {
-        if let Some(line) = self.line(progress, Instant::now()) {
-            streams::note(&line);
-        }
+/// A rate as people read it.
+fn readable_rate(rate: f64) -> String {
+    match rate {
+        0.0..1e3 => format!("{rate:.0} pixels/s"),
+        1e3..1e6 => format!("{:.0} kpixels/s", rate / 1e3),
+        _ => format!("{:.1} Mpixels/s", rate / 1e6),
     }
+}
 
-    /// The line due at the moment `now`, if any.
-    fn line(&self, progress: &Progress, now: Instant) -> Option<String> {
-        let &Progress { done, total } = progress;
-        // A thread that died while it held the lock left two numbers that are still good.
-        let mut last = self.last.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        let is_end = self.tells_end && done >= total;
-        let is_due = now.saturating_duration_since(last.0) >= self.interval;
-        if done <= last.1 || !(is_due || is_end) {
-            return None;
-        }
-        *last = (now, done);
-        let elapsed = now.saturating_duration_since(self.started).as_secs_f64();
-        Some((self.format)(&Report { done, total, elapsed }))
-    }
+fn bar_text(report: &Report) -> String {
+    let left =
+        report.seconds_left().map_or_else(String::new, |s| format!(", {} left", duration(s)));
+    format!("{}{left}", readable_rate(report.rate()))
 }
 
 fn plain_line(report: &Report) -> String {
-    let percent = 100.0 * report.done as f64 / report.total.max(1) as f64;
-    let left = report.seconds_left().map_or_else(String::new, |left| format!(", {left:.0} s left"));
-    format!("{percent:.0} % after {:.0} s{left}", report.elapsed)
+    let left =
+        report.seconds_left().map_or_else(String::new, |s| format!(", {} left", duration(s)));
+    let rate = readable_rate(report.rate());
+    format!("{:.0} % after {}{left}, {rate}", 100.0 * report.share, duration(report.elapsed))
 }
 
 fn json_line(report: &Report) -> String {
@@ -140,8 +219,15 @@ fn json_line(report: &Report) -> String {
         "total": report.total,
         "seconds": report.elapsed,
         "seconds_left": report.seconds_left(),
+        "pixels_per_second": report.rate(),
     })
     .to_string()
+}
+
+/// What a worker of Open Job Description takes for progress and status, from either stream.
+fn openjd_lines(report: &Report) -> String {
+    let status = bar_text(report);
+    format!("openjd_progress: {:.1}\nopenjd_status: {status}", 100.0 * report.share)
 }
 
 /// Standard error as indicatif draws on it, terminal or not, for whoever asks for the bar by name.
@@ -200,39 +286,69 @@ impl TermLike for AnyStderr {
 mod tests {
     use super::*;
 
-    /// The lines that reports of `(seconds, done)` out of 100 give.
-    fn lines_of(lines: &Lines, reports: &[(f64, u64)]) -> Vec<String> {
+    /// The lines that reports of `(seconds, done)` out of 100 give, of which a share was done before.
+    fn lines_of(mode: ProgressMode, share: f64, reports: &[(f64, u64)]) -> Vec<String> {
+        let reporter = Reporter::new(mode, 1e6);
+        reporter.begin(share);
+        let started = reporter.clock.lock().expect("no panic").started;
+        let Kind::Lines(lines) = &reporter.kind else { panic!("lines") };
         let line = |&(seconds, done): &(f64, u64)| {
-            let now = lines.started + Duration::from_secs_f64(seconds);
-            lines.line(&Progress { done, total: 100 }, now)
+            let now = started + Duration::from_secs_f64(seconds);
+            let progress = Progress { done, total: 100 };
+            reporter
+                .due(&progress, lines.interval, lines.tells_end, now)
+                .map(|r| (lines.format)(&r))
         };
         reports.iter().filter_map(line).collect()
     }
 
     #[test]
     fn plain_lines_keep_their_pause() {
-        let lines = Lines::new(plain_line, PLAIN_INTERVAL, false);
         let reports =
-            [(0.1, 1), (4.9, 9), (5.0, 10), (5.1, 11), (9.9, 39), (10.0, 40), (12.0, 100)];
-        let expected = ["10 % after 5 s, 45 s left", "40 % after 10 s, 15 s left"];
-        assert_eq!(lines_of(&lines, &reports), expected);
+            [(0.1, 1), (4.9, 9), (5.1, 10), (5.2, 11), (9.9, 39), (10.2, 40), (12.0, 100)];
+        let expected =
+            ["10 % after 5 s, 46 s left, 20 kpixels/s", "40 % after 10 s, 15 s left, 39 kpixels/s"];
+        assert_eq!(lines_of(ProgressMode::Plain, 0.0, &reports), expected);
     }
 
     #[test]
     fn late_reports_of_slow_threads_are_left_out() {
-        let lines = Lines::new(plain_line, PLAIN_INTERVAL, false);
-        let expected = ["50 % after 10 s, 10 s left"];
-        assert_eq!(lines_of(&lines, &[(10.0, 50), (20.0, 49), (30.0, 50)]), expected);
+        let expected = ["50 % after 10 s, 10 s left, 50 kpixels/s"];
+        let reports = [(10.0, 50), (20.0, 49), (30.0, 50)];
+        assert_eq!(lines_of(ProgressMode::Plain, 0.0, &reports), expected);
+    }
+
+    /// What was done before says nothing about how fast this machine is.
+    #[test]
+    fn the_time_left_is_that_of_what_was_done_since_the_program_began() {
+        let expected = ["90 % after 10 s, 10 s left, 10 kpixels/s"];
+        assert_eq!(lines_of(ProgressMode::Plain, 0.8, &[(10.0, 90)]), expected);
     }
 
     #[test]
     fn json_lines_tell_the_end() {
-        let lines = Lines::new(json_line, JSON_INTERVAL, true);
-        let written = lines_of(&lines, &[(0.05, 10), (0.1, 20), (0.15, 100), (0.2, 90)]);
+        let reports = [(0.05, 10), (0.11, 20), (0.15, 100), (0.2, 90)];
+        let written = lines_of(ProgressMode::Json, 0.0, &reports);
         let parsed: Vec<serde_json::Value> =
             written.iter().map(|line| serde_json::from_str(line).expect("JSON")).collect();
         assert_eq!(parsed.len(), 2, "{written:?}");
         assert_eq!((&parsed[0]["done"], &parsed[0]["total"]), (&20.into(), &100.into()));
         assert_eq!((&parsed[1]["done"], &parsed[1]["seconds_left"]), (&100.into(), &0.0.into()));
+    }
+
+    #[test]
+    fn openjd_lines_are_a_percentage_and_a_status() {
+        let written = lines_of(ProgressMode::Openjd, 0.0, &[(2.0, 25), (2.1, 26), (2.5, 100)]);
+        assert_eq!(written[0], "openjd_progress: 25.0\nopenjd_status: 125 kpixels/s, 6 s left");
+        assert!(written[1].starts_with("openjd_progress: 100.0\n"), "{written:?}");
+    }
+
+    #[test]
+    fn times_read_well() {
+        let times = [0.4, 59.6, 61.0, 3599.0, 3600.0, 90_000.0].map(duration);
+        assert_eq!(
+            times,
+            ["0 s", "1 min 00 s", "1 min 01 s", "59 min 59 s", "1 h 00 min", "25 h 00 min"]
+        );
     }
 }

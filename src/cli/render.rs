@@ -1,38 +1,42 @@
 //! `whitted render`: checks everything that can be checked, renders, writes.
 
-use std::io::{self, IsTerminal};
-use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use anyhow::{Context, anyhow};
+use anyhow::Context;
 use image::RgbImage;
 use whitted::aa::AntiAliasing;
 use whitted::classic::{CLASSIC_SIZE, render_classic};
 use whitted::film::metrics::read_png_rgb8;
-use whitted::film::{Difference, FileError, Film, OutputFile, WholeFile, encode};
-use whitted::render::{Goal, RayCounts, RenderOptions, Rendering};
+use whitted::film::{Difference, Film, Label, Share, encode};
+use whitted::render::{RayCounts, RenderOptions, Rendering};
 use whitted::scene::{LoadOptions, Loaded, Scene};
 
 use super::args::{ProgressMode, RenderArgs, Rules};
 use super::failure::{Failure, warn};
-use super::progress::Reporter;
+use super::job::{self, Finished, Order};
+use super::options::{
+    check_classic, check_memory, check_parts, check_reference, check_size, label, options,
+};
+use super::signals::Signals;
 use super::stats::{Seconds, Statistics};
-use super::{memory, streams};
+use super::target::{Picture, StatsTarget, check_apart};
+use super::{finished, streams};
 
-/// What writing takes, and what passed before the clock was looked at, at most: kept free at the end of a time limit.
-const WRITE_SECONDS: f64 = 0.012;
-const WRITE_SECONDS_PER_PIXEL: f64 = 4e-8;
-
-/// The most rays per pixel of a render towards a goal, unless the mode says so.
-const MOST_RAYS_FOR_GOAL: u32 = 1024;
+/// A picture to render: all of what is wanted, or one share of it.
+struct Task {
+    options: RenderOptions,
+    label: Label,
+    picture: Picture,
+    stats: Option<StatsTarget>,
+}
 
 /// Renders as `args` say; `started` is when the program did.
 pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
-    if args.rules == Rules::Classic {
-        check_classic(args)?;
-    }
+    let signals = Signals::watch().context("signals cannot be watched")?;
+    check_classic(args)?;
+    check_parts(args)?;
+    check_size(args)?;
     let loading = Instant::now();
-    let is_classic = args.rules == Rules::Classic;
     let load_options = LoadOptions {
         models: args.models.clone(),
         eye: args.eye,
@@ -40,50 +44,100 @@ pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
         up: args.up,
         fov: args.fov,
         objects: args.objects,
-        rows: is_classic.then_some(CLASSIC_SIZE),
+        rows: (args.rules == Rules::Classic).then_some(CLASSIC_SIZE),
     };
     let Loaded { scene, warnings: odd } = whitted::scene::load(&args.scene, &load_options)?;
     warn(&odd, args.strict, args.quiet)?;
     let build = scene.bvh_stats().build_seconds;
     let load = (loading.elapsed().as_secs_f64() - build).max(0.0);
 
-    let picture = Picture::prepare(args.output.as_deref(), &scene)?;
-    let stats = args.stats.as_deref().map(StatsTarget::prepare).transpose()?;
-    check_apart(&picture, stats.as_ref())?;
-    check_memory(args.size.unwrap_or(scene.resolution()))?;
-
+    let hash = scene.hash();
+    let shares = args.tile.as_ref().map_or_else(Vec::new, |shares| shares.0.clone());
+    let shares: Vec<Option<Share>> =
+        if shares.is_empty() { vec![None] } else { shares.into_iter().map(Some).collect() };
+    let several = shares.len() > 1;
+    let mut tasks = Vec::new();
+    for share in shares {
+        tasks.push(task(args, &scene, &hash, share, several, started)?);
+    }
     let reference = args.reference.as_deref().map(read_png_rgb8).transpose()?;
-    let options = options(args, &scene, started)?;
-    check_reference(&options, &scene, reference.as_ref())?;
-    let rendering = {
-        let mode = if args.quiet { ProgressMode::None } else { args.progress };
-        let reporter = Reporter::new(mode);
-        if is_classic {
-            render_classic(&scene, args.threads)?
-        } else {
-            whitted::render::render(&scene, &options, &|progress| reporter.report(&progress))?
+    for task in &tasks {
+        check_memory(&task.label)?;
+        check_reference(&task.label, reference.as_ref())?;
+    }
+    for (k, task) in tasks.iter().enumerate() {
+        let since = if several { Instant::now() } else { started };
+        perform(task, args, &scene, &signals, reference.as_ref(), [load, build], since)?;
+        if let Some(signal) = signals.received().filter(|_| k + 1 < tasks.len()) {
+            return Err(Failure::stopped(
+                signal,
+                "between two tiles; go on with the same command and --resume",
+            ));
         }
-    };
+    }
+    Ok(())
+}
 
-    let measured = reference.map(|reference| measure(&rendering.film, &reference)).transpose()?;
-    let name = picture.name();
-    let writing = Instant::now();
-    picture.write(&rendering.film)?;
-    let write = writing.elapsed().as_secs_f64();
+fn task(
+    args: &RenderArgs,
+    scene: &Scene,
+    hash: &str,
+    share: Option<Share>,
+    several: bool,
+    started: Instant,
+) -> Result<Task, Failure> {
+    let by_share = several || args.output.is_none();
+    let picture = Picture::prepare(args.output.as_deref(), scene.name(), share, by_share)?;
+    let in_name = share.filter(|_| several);
+    let stats =
+        args.stats.as_deref().map(|path| StatsTarget::prepare(path, in_name)).transpose()?;
+    check_apart(&picture, stats.as_ref())?;
+    let options = options(args, scene, share, started)?;
+    let label = label(args, scene, hash, &options, share);
+    Ok(Task { options, label, picture, stats })
+}
+
+/// Renders and writes one picture, and says so.
+fn perform(
+    task: &Task,
+    args: &RenderArgs,
+    scene: &Scene,
+    signals: &Signals,
+    reference: Option<&RgbImage>,
+    [load, build]: [f64; 2],
+    started: Instant,
+) -> Result<(), Failure> {
+    let Task { options, label, picture, stats } = task;
+    // Under `json`, standard error is for programs, and they have the statistics.
+    let is_silent = args.quiet || args.progress == ProgressMode::Json;
+    let has_more_to_tell = stats.is_some() || reference.is_some();
+    if args.resume && !has_more_to_tell && finished::is_finished(picture, label) {
+        if !is_silent {
+            streams::note(&format!("{} is finished already", picture.name()));
+        }
+        return Ok(());
+    }
+    let Finished { rendering, write } = if args.rules == Rules::Classic {
+        let rendering = render_classic(scene, args.threads)?;
+        let writing = Instant::now();
+        picture.write(&rendering.film, label)?;
+        Finished { rendering, write: writing.elapsed().as_secs_f64() }
+    } else {
+        job::run(&Order { scene, options, label, picture, signals }, args)?
+    };
+    let measured = reference.map(|reference| measure(&rendering.film, reference)).transpose()?;
     let total = started.elapsed().as_secs_f64();
     let seconds = Seconds { load, build, render: rendering.seconds, write, total };
     if let Some(target) = stats {
-        target.write(
-            &Statistics::new(&scene, options.aa, &rendering, measured, seconds).to_json()?,
-        )?;
+        target
+            .write(&Statistics::new(scene, options.aa, &rendering, measured, seconds).to_json()?)?;
     }
-    // Under `json`, standard error is for programs, and they have the statistics.
-    if !args.quiet && args.progress != ProgressMode::Json {
+    if !is_silent {
         for warning in warnings(&rendering, args) {
             streams::note(&format!("warning: {warning}"));
         }
-        streams::note(&summary(&name, options.aa, &rendering, measured, total));
-        if is_classic {
+        streams::note(&summary(&picture.name(), options.aa, &rendering, measured, total));
+        if args.rules == Rules::Classic {
             let RayCounts { camera_hit, reflected, refracted, shadow, .. } = rendering.rays;
             streams::note(&format!(
                 "classic rules: {camera_hit} eye rays that hit, {reflected} reflected, {refracted} \
@@ -91,99 +145,13 @@ pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
             ));
         }
     }
-    Ok(())
-}
-
-/// The classical rules leave no choice in these.
-fn check_classic(args: &RenderArgs) -> Result<(), Failure> {
-    let chosen = [
-        ("--size", args.size.is_some()),
-        ("--aa", args.aa.is_some()),
-        ("--depth", args.depth.is_some()),
-        ("--crop", args.crop.is_some()),
-        ("--max-error", args.max_error.is_some()),
-        ("--time-limit", args.time_limit.is_some()),
-    ];
-    match chosen.iter().find(|(_, is_given)| *is_given) {
-        None => Ok(()),
-        Some((flag, _)) => Err(Failure::usage(anyhow!(
-            "--rules classic has its own size, rays and depth; leave out {flag}"
-        ))),
-    }
-}
-
-/// What the flags ask for.
-fn options(args: &RenderArgs, scene: &Scene, started: Instant) -> Result<RenderOptions, Failure> {
-    let goal = match (args.max_error, args.time_limit) {
-        (Some(error), _) => Goal::Error(error),
-        (None, Some(seconds)) => {
-            let writing = WRITE_SECONDS + WRITE_SECONDS_PER_PIXEL * pixels(args, scene);
-            Goal::Until(started + Duration::from_secs_f64((seconds - writing).max(0.0)))
+    match signals.received() {
+        Some(signal) if rendering.outcome.cut => {
+            let text = format!("early; {} is what there was until then", picture.name());
+            Err(Failure::stopped(signal, &text))
         }
-        (None, None) => Goal::Mode,
-    };
-    let aa = match (args.aa, goal) {
-        (None, Goal::Mode) => scene.aa().unwrap_or_default(),
-        (None, _) => AntiAliasing::Adaptive { error: 0.0, most: MOST_RAYS_FOR_GOAL },
-        (Some(aa @ AntiAliasing::Adaptive { .. }), _) | (Some(aa), Goal::Mode) => aa,
-        (Some(aa), _) => {
-            let flag = if args.max_error.is_some() { "--max-error" } else { "--time-limit" };
-            return Err(Failure::usage(anyhow!(
-                "{flag} chooses the rays of each pixel itself, but --aa {aa} fixes them; leave --aa out or use \
-                 adaptive"
-            )));
-        }
-    };
-    if let Some(crop) = args.crop {
-        let [width, height] = args.size.unwrap_or(scene.resolution());
-        if crop.x1 > width || crop.y1 > height {
-            return Err(Failure::usage(anyhow!(
-                "--crop {},{},{},{} is not inside of the picture, {width}x{height} pixels",
-                crop.x0,
-                crop.y0,
-                crop.x1,
-                crop.y1
-            )));
-        }
+        _ => Ok(()),
     }
-    Ok(RenderOptions {
-        size: args.size,
-        aa,
-        depth: args.depth,
-        threads: args.threads,
-        crop: args.crop,
-        goal,
-    })
-}
-
-fn pixels(args: &RenderArgs, scene: &Scene) -> f64 {
-    let [width, height] = match args.crop {
-        Some(crop) => [crop.width(), crop.height()],
-        None => args.size.unwrap_or(scene.resolution()),
-    };
-    f64::from(width) * f64::from(height)
-}
-
-/// A reference of another size is better refused before the render than after it.
-fn check_reference(
-    options: &RenderOptions,
-    scene: &Scene,
-    reference: Option<&RgbImage>,
-) -> Result<(), Failure> {
-    let Some(reference) = reference else { return Ok(()) };
-    let [width, height] = match options.crop {
-        Some(crop) => [crop.width(), crop.height()],
-        None => options.size.unwrap_or(scene.resolution()),
-    };
-    if reference.dimensions() == (width, height) {
-        return Ok(());
-    }
-    Err(Failure::usage(anyhow!(
-        "--reference: the picture to render has {width}x{height} pixels, the reference {}x{}; choose one of the \
-         same size",
-        reference.width(),
-        reference.height()
-    )))
 }
 
 /// The error against the reference, as the picture file will have it.
@@ -211,109 +179,6 @@ fn warnings(rendering: &Rendering, args: &RenderArgs) -> Vec<String> {
         ));
     }
     warnings
-}
-
-/// Where the picture goes.
-enum Picture {
-    Stdout,
-    File(OutputFile),
-}
-
-impl Picture {
-    fn prepare(output: Option<&Path>, scene: &Scene) -> Result<Self, Failure> {
-        let path = match output {
-            Some(path) if path == Path::new("-") => {
-                return if io::stdout().is_terminal() {
-                    Err(Failure::usage(anyhow!(
-                        "--output -: standard output is a terminal, which shows no PNG; redirect \
-                         it or name a file"
-                    )))
-                } else {
-                    Ok(Self::Stdout)
-                };
-            }
-            Some(path) => path.to_owned(),
-            None => PathBuf::from(format!("{}.png", scene.name())),
-        };
-        Ok(Self::File(OutputFile::prepare(path)?))
-    }
-
-    /// For the user.
-    fn name(&self) -> String {
-        match self {
-            Self::Stdout => "a PNG to standard output".to_owned(),
-            Self::File(file) => file.file().path().display().to_string(),
-        }
-    }
-
-    fn write(self, film: &Film) -> Result<(), Failure> {
-        match self {
-            Self::Stdout => {
-                let mut bytes = Vec::new();
-                encode::write_png(film, &mut bytes)?;
-                streams::write_stdout(&bytes)
-            }
-            Self::File(file) => Ok(file.commit(film)?),
-        }
-    }
-}
-
-/// Where the statistics go.
-enum StatsTarget {
-    Stdout,
-    File(WholeFile),
-}
-
-impl StatsTarget {
-    fn prepare(path: &Path) -> Result<Self, Failure> {
-        if path == Path::new("-") {
-            return Ok(Self::Stdout);
-        }
-        Ok(Self::File(WholeFile::prepare(path).context("--stats")?))
-    }
-
-    fn write(self, json: &str) -> Result<(), Failure> {
-        match self {
-            Self::Stdout => streams::write_stdout(json.as_bytes()),
-            Self::File(file) => match file.commit(|writer| writer.write_all(json.as_bytes())) {
-                // A pipe by name, such as /dev/stdout, whose reader has left.
-                Err(FileError::Write { source, .. })
-                    if source.kind() == io::ErrorKind::BrokenPipe =>
-                {
-                    Ok(())
-                }
-                done => Ok(done.context("--stats")?),
-            },
-        }
-    }
-}
-
-/// Two results in one place would spoil each other.
-fn check_apart(picture: &Picture, stats: Option<&StatsTarget>) -> Result<(), Failure> {
-    let place = match (picture, stats) {
-        (Picture::Stdout, Some(StatsTarget::Stdout)) => "standard output",
-        (Picture::File(picture), Some(StatsTarget::File(stats)))
-            if picture.file().is_same_file(stats) =>
-        {
-            "the same file"
-        }
-        _ => return Ok(()),
-    };
-    Err(Failure::usage(anyhow!("--output and --stats both go to {place}; name another for one")))
-}
-
-/// A picture larger than the memory at hand would end the program, or others, without a word.
-fn check_memory([width, height]: [u32; 2]) -> Result<(), Failure> {
-    let needed = memory::picture_bytes(width, height);
-    match memory::available().map(u128::from) {
-        Some(available) if needed > available => Err(anyhow!(
-            "a picture of {width}x{height} pixels needs {} of memory, of which {} are free; choose \
-             a smaller --size",
-            memory::readable(needed),
-            memory::readable(available),
-        ))?,
-        _ => Ok(()),
-    }
 }
 
 /// What was done and what it took, in two lines.

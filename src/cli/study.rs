@@ -96,7 +96,7 @@ fn write_portrait(folder: &Path, portrait: &Portrait) -> Result<(), Failure> {
     let Portrait { scene, film, errors } = portrait;
     let name = report::file_name(scene);
     let width = film.width();
-    OutputFile::prepare(folder.join(format!("{name}.png")))?.commit(film)?;
+    OutputFile::prepare(folder.join(format!("{name}.png")))?.commit(film, None)?;
     let rays: Vec<f32> = film.samples().iter().map(|rays| *rays as f32).collect();
     file(folder, &format!("{name}-rays.png"))?
         .commit(|writer| write_heatmap(&rays, width, &Scale::rays(64), writer))?;

@@ -1,6 +1,5 @@
-//! From linear light to 8-bit sRGB and to PNG.
+//! From linear light to 8-bit sRGB.
 
-use std::io::{self, Write};
 use std::sync::LazyLock;
 
 use super::Film;
@@ -16,30 +15,11 @@ pub fn to_srgb8(film: &Film) -> Vec<u8> {
     bytes
 }
 
-/// Writes the film as an 8-bit sRGB PNG with an `sRGB` chunk (perceptual rendering intent).
-///
-/// The same film always gives the same bytes.
-///
-/// # Errors
-///
-/// Those of the writer; a film without pixels is [`io::ErrorKind::InvalidInput`], since PNG has no
-/// such picture.
-pub fn write_png<W: Write>(film: &Film, writer: W) -> io::Result<()> {
-    write_png_parts(film, writer).map_err(|error| match error {
-        png::EncodingError::IoError(error) => error,
-        other => io::Error::new(io::ErrorKind::InvalidInput, other.to_string()),
-    })
-}
-
-fn write_png_parts<W: Write>(film: &Film, writer: W) -> Result<(), png::EncodingError> {
-    let mut encoder = png::Encoder::new(writer, film.width(), film.height());
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-    encoder.set_compression(png::Compression::Fast);
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(&to_srgb8(film))?;
-    writer.finish()
+/// Puts the 8-bit sRGB bytes of `pixels` into `bytes`, in place of what was there.
+pub(super) fn encode_row(pixels: &[Rgb], bytes: &mut Vec<u8>) {
+    bytes.clear();
+    bytes.resize(3 * pixels.len(), 0);
+    encode_pixels(pixels, bytes);
 }
 
 fn encode_pixels(pixels: &[Rgb], bytes: &mut [u8]) {
@@ -118,19 +98,6 @@ mod tests {
         film
     }
 
-    /// A film whose 8-bit form is known by construction: pixel `i` is level `i % 256` of sRGB.
-    fn ramp(width: u32, height: u32) -> (Film, Vec<u8>) {
-        let levels: Vec<u8> = (0..width * height).map(|i| (i % 256) as u8).collect();
-        let pixels: Vec<Rgb> = levels
-            .iter()
-            .map(|&level| Rgb::splat(srgb_to_linear(f64::from(level) / 255.0) as f32))
-            .collect();
-        let mut film = Film::new(width, height);
-        let tile = Tile { x0: 0, y0: 0, x1: width, y1: height };
-        film.blit(&tile, &pixels, &vec![1; levels.len()]);
-        (film, levels.into_iter().flat_map(|level| [level; 3]).collect())
-    }
-
     /// Oracle: the formula. Both grow with the value, so agreement on either side of each step and
     /// at both ends of each bucket is agreement everywhere; the sweep does not rely on that.
     #[test]
@@ -169,44 +136,5 @@ mod tests {
         let bytes = to_srgb8(&row_of(&values));
         let greys: Vec<u8> = bytes.chunks_exact(3).map(|pixel| pixel[0]).collect();
         assert_eq!(greys, [0, 3, 118, 128, 188, 255, 0, 255, 255, 0]);
-    }
-
-    /// Oracle: levels chosen first, decoded by the `image` crate.
-    #[test]
-    fn png_decodes_to_the_levels_it_was_made_of() {
-        for (width, height) in [(1, 1), (1, 300), (300, 1), (64, 33)] {
-            let (film, levels) = ramp(width, height);
-            assert_eq!(to_srgb8(&film), levels);
-            let mut file = Vec::new();
-            write_png(&film, &mut file).expect("written to memory");
-            let decoded = image::load_from_memory(&file).expect("a PNG");
-            assert_eq!(decoded.color(), image::ColorType::Rgb8);
-            assert_eq!((decoded.width(), decoded.height()), (width, height));
-            assert_eq!(decoded.into_rgb8().into_raw(), levels, "{width} x {height}");
-        }
-    }
-
-    /// Oracle: the PNG specification, section 11.3.2.5 (one byte, 0 is perceptual, before the data).
-    #[test]
-    fn png_says_that_it_is_srgb() {
-        let mut file = Vec::new();
-        write_png(&ramp(4, 4).0, &mut file).expect("written to memory");
-        let place = |name: &[u8]| file.windows(name.len()).position(|bytes| bytes == name);
-        let srgb = place(b"\0\0\0\x01sRGB\0").expect("an sRGB chunk of one byte, 0");
-        assert!(srgb < place(b"IDAT").expect("picture data"));
-    }
-
-    #[test]
-    fn a_film_without_pixels_is_no_png() {
-        let error = write_png(&Film::new(0, 5), &mut Vec::new()).expect_err("no pixels");
-        assert_eq!(error.kind(), io::ErrorKind::InvalidInput);
-    }
-
-    /// The writer's own error arrives, not the encoder's view of it.
-    #[test]
-    fn a_full_disk_is_reported_as_such() {
-        let (film, _) = ramp(64, 64);
-        let error = write_png(&film, &mut [0_u8; 100][..]).expect_err("too little room");
-        assert_eq!(error.kind(), io::ErrorKind::WriteZero);
     }
 }

@@ -1,20 +1,33 @@
 //! The film: what a render fills tile by tile, and how it becomes a file.
 //!
 //! [`Film`] holds linear colours; sRGB appears only in [`encode`], at the very end. [`save`] puts a
-//! picture on disk whole or not at all, [`metrics`] measures how far two pictures are apart.
+//! picture on disk whole or not at all, with a [`Label`] that says what it is; [`merge()`] joins parts;
+//! [`metrics`] measures how far two pictures are apart.
 
 pub mod encode;
 mod error;
+mod exr;
 pub mod heatmap;
+mod label;
+mod merge;
 pub mod metrics;
+mod png;
+mod ppm;
 pub mod save;
+mod share;
 mod similarity;
 mod tile;
 pub mod whole_file;
 
+pub use self::exr::write_exr;
+pub use self::png::write_png;
 pub use error::ImageError;
+pub use label::{Label, Share};
+pub use merge::{MergeError, merge, read_label};
 pub use metrics::Difference;
-pub use save::OutputFile;
+pub use ppm::write_ppm;
+pub use save::{Format, OutputFile};
+pub use share::{ShareError, share};
 pub use tile::{Tile, tiles};
 pub use whole_file::{FileError, WholeFile};
 
@@ -90,6 +103,21 @@ impl Film {
         self.pixels[self.index(x, y)]
     }
 
+    /// The colours of a row.
+    fn row(&self, y: u32) -> &[Rgb] {
+        &self.pixels[self.index(0, y)..][..self.width as usize]
+    }
+
+    /// The camera rays of the pixels of a row; a pixel without any is not rendered yet.
+    fn row_samples(&self, y: u32) -> &[u32] {
+        &self.samples[self.index(0, y)..][..self.width as usize]
+    }
+
+    /// How many pixels are not rendered yet.
+    pub fn missing(&self) -> u64 {
+        self.samples.iter().filter(|count| **count == 0).count() as u64
+    }
+
     /// Copies a finished tile into its place; `pixels` and `samples` run row by row over the tile.
     ///
     /// # Panics
@@ -111,6 +139,20 @@ impl Film {
             self.pixels[start..start + width].copy_from_slice(pixels);
             self.samples[start..start + width].copy_from_slice(samples);
         }
+    }
+
+    /// A copy of the colours and rays of `tile`, row by row.
+    ///
+    /// # Panics
+    ///
+    /// If the tile sticks out of the film.
+    pub fn cut(&self, tile: &Tile) -> (Vec<Rgb>, Vec<u32>) {
+        assert!(tile.x1 <= self.width && tile.y1 <= self.height, "{tile:?} sticks out of the film");
+        let columns = tile.x0 as usize..tile.x1 as usize;
+        let rows = tile.y0..tile.y1;
+        let colors = rows.clone().flat_map(|y| self.row(y)[columns.clone()].iter().copied());
+        let samples = rows.flat_map(|y| self.row_samples(y)[columns.clone()].iter().copied());
+        (colors.collect(), samples.collect())
     }
 
     fn index(&self, x: u32, y: u32) -> usize {

@@ -2,24 +2,30 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Film, ImageError, WholeFile, encode};
+use super::{Film, ImageError, Label, WholeFile, write_exr, write_png, write_ppm};
 
 /// The picture formats there are, by the extension that picks them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Format {
+pub enum Format {
     /// 8-bit sRGB.
     Png,
+    /// 32-bit linear floats.
+    Exr,
+    /// 8-bit sRGB without compression or label.
+    Ppm,
 }
 
 /// For messages.
-const KNOWN_EXTENSIONS: &str = ".png";
+const KNOWN_EXTENSIONS: &str = ".png, .exr, .ppm";
 
 impl Format {
     /// The format the extension of `path` names, in upper or lower case.
     fn of(path: &Path) -> Result<Self, ImageError> {
         let extension = path.extension().unwrap_or_default().to_string_lossy();
-        if extension.eq_ignore_ascii_case("png") {
-            return Ok(Self::Png);
+        for (known, format) in [("png", Self::Png), ("exr", Self::Exr), ("ppm", Self::Ppm)] {
+            if extension.eq_ignore_ascii_case(known) {
+                return Ok(format);
+            }
         }
         Err(ImageError::UnknownExtension {
             path: path.to_owned(),
@@ -40,8 +46,7 @@ pub struct OutputFile {
 }
 
 impl OutputFile {
-    /// Checks that the extension of `path` names a known format (`.png`, 8-bit sRGB) and that the
-    /// file can be written.
+    /// Checks that the extension of `path` names a [known format](Format) and that the file can be written.
     ///
     /// # Errors
     ///
@@ -57,14 +62,21 @@ impl OutputFile {
         &self.file
     }
 
-    /// Writes the film and puts the file into place; an existing picture is replaced at that moment.
+    /// The format that the extension picks.
+    pub fn format(&self) -> Format {
+        self.format
+    }
+
+    /// Writes the film, and the label where the format has a place for it, and puts the file into place; an existing picture is replaced at that moment.
     ///
     /// # Errors
     ///
     /// [`ImageError::File`]; an existing picture is then still what it was.
-    pub fn commit(self, film: &Film) -> Result<(), ImageError> {
+    pub fn commit(&self, film: &Film, label: Option<&Label>) -> Result<(), ImageError> {
         match self.format {
-            Format::Png => self.file.commit(|writer| encode::write_png(film, writer))?,
+            Format::Png => self.file.commit(|writer| write_png(film, label, writer))?,
+            Format::Exr => self.file.commit(|writer| write_exr(film, label, writer))?,
+            Format::Ppm => self.file.commit(|writer| write_ppm(film, writer))?,
         }
         Ok(())
     }
@@ -73,7 +85,7 @@ impl OutputFile {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::film::{FileError, metrics};
+    use crate::film::{FileError, encode, metrics};
     use std::fs;
 
     #[test]
@@ -82,7 +94,7 @@ mod tests {
         let path = folder.path().join("picture.PNG");
         for size in [3, 5] {
             let film = Film::new(size, 2);
-            OutputFile::prepare(&path).expect("writable").commit(&film).expect("written");
+            OutputFile::prepare(&path).expect("writable").commit(&film, None).expect("written");
             let read = metrics::read_png_rgb8(&path).expect("readable");
             assert_eq!(read.dimensions(), (size, 2));
             assert_eq!(read.into_raw(), encode::to_srgb8(&film));
@@ -95,7 +107,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("picture.png");
         fs::write(&path, "old").expect("written");
-        let error = OutputFile::prepare(&path).expect("writable").commit(&Film::new(0, 0));
+        let error = OutputFile::prepare(&path).expect("writable").commit(&Film::new(0, 0), None);
         assert!(matches!(error, Err(ImageError::File(FileError::Write { .. }))), "{error:?}");
         assert_eq!(fs::read(&path).expect("readable"), b"old");
         assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 1);
@@ -105,7 +117,7 @@ mod tests {
     fn unknown_extensions_are_refused_with_the_known_ones() {
         for name in ["picture", "picture.", "picture.tif", "png", ".png", "a.png.gz"] {
             let error = OutputFile::prepare(name).expect_err("unknown").to_string();
-            assert!(error.starts_with(name) && error.ends_with(": .png"), "{error}");
+            assert!(error.starts_with(name) && error.ends_with(": .png, .exr, .ppm"), "{error}");
             assert!(!Path::new(name).exists());
         }
     }

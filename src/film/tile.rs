@@ -23,6 +23,20 @@ impl Tile {
     pub fn height(&self) -> u32 {
         self.y1 - self.y0
     }
+
+    /// The place in the whole picture of a tile whose place counts from the corner of `part`.
+    #[must_use]
+    pub fn plus(&self, part: &Self) -> Self {
+        let (x, y) = (part.x0, part.y0);
+        Self { x0: self.x0 + x, y0: self.y0 + y, x1: self.x1 + x, y1: self.y1 + y }
+    }
+
+    /// The place that counts from the corner of `part`, in which the tile lies.
+    #[must_use]
+    pub fn minus(&self, part: &Self) -> Self {
+        let (x, y) = (part.x0, part.y0);
+        Self { x0: self.x0 - x, y0: self.y0 - y, x1: self.x1 - x, y1: self.y1 - y }
+    }
 }
 
 /// Squares of `side` pixels that cover a `width` x `height` picture without overlap, those at the

@@ -1,7 +1,7 @@
 //! Files that appear whole or not at all.
 
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
@@ -55,6 +55,11 @@ pub enum FileError {
         source: io::Error,
     },
 }
+
+/// What a file is written to. Devices and pipes do not seek.
+pub trait WriteSeek: Write + Seek {}
+
+impl<W: Write + Seek> WriteSeek for W {}
 
 /// A file that will be written later, at once and completely.
 ///
@@ -138,6 +143,11 @@ impl WholeFile {
         &self.path
     }
 
+    /// Whether it is a file on disk, not a device or a pipe.
+    pub fn is_on_disk(&self) -> bool {
+        matches!(self.place, Place::Disk { .. })
+    }
+
     /// Whether both lead to the same file on disk, through whatever links and relative paths.
     pub fn is_same_file(&self, other: &Self) -> bool {
         match (&self.place, &other.place) {
@@ -160,8 +170,8 @@ impl WholeFile {
     ///
     /// [`FileError::Write`]; the old file, or none, is then still there, and no temporary one.
     pub fn commit(
-        self,
-        write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+        &self,
+        write: impl FnOnce(&mut dyn WriteSeek) -> io::Result<()>,
     ) -> Result<(), FileError> {
         let done = match &self.place {
             Place::Disk { target, folder } => replace(target, folder, write),
@@ -169,16 +179,23 @@ impl WholeFile {
                 File::options().write(true).open(&self.path).and_then(|file| fill(&file, write))
             }
         };
-        done.map_err(|source| FileError::Write { path: self.path, source })
+        done.map_err(|source| FileError::Write { path: self.path.clone(), source })
     }
 }
 
 fn replace(
     target: &Path,
     folder: &Path,
-    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    write: impl FnOnce(&mut dyn WriteSeek) -> io::Result<()>,
 ) -> io::Result<()> {
-    let file = create_beside(folder)?;
+    let file = match create_beside(folder) {
+        // Deleted since it was looked at: what was worked for is not to be lost for that.
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            fs::create_dir_all(folder)?;
+            create_beside(folder)?
+        }
+        created => created?,
+    };
     fill(file.as_file(), write)?;
     if let Ok(existing) = fs::metadata(target) {
         file.as_file().set_permissions(existing.permissions())?;
@@ -188,10 +205,43 @@ fn replace(
     Ok(())
 }
 
-fn fill(file: &File, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-    let mut buffer = BufWriter::new(file);
+fn fill(file: &File, write: impl FnOnce(&mut dyn WriteSeek) -> io::Result<()>) -> io::Result<()> {
+    let mut buffer = BufWriter::new(Watched { file, failed: None });
     write(&mut buffer)?;
-    buffer.flush()
+    buffer.flush()?;
+    // An encoder may have swallowed it.
+    buffer.get_ref().failed.map_or(Ok(()), |kind| Err(kind.into()))
+}
+
+/// A file that remembers that a write failed.
+struct Watched<'a> {
+    file: &'a File,
+    failed: Option<io::ErrorKind>,
+}
+
+impl Write for Watched<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if let Some(kind) = self.failed {
+            return Err(kind.into());
+        }
+        let written = self.file.write(bytes);
+        if let Err(error) = &written
+            && error.kind() != io::ErrorKind::Interrupted
+        {
+            self.failed = Some(error.kind());
+        }
+        written
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Seek for Watched<'_> {
+    fn seek(&mut self, to: io::SeekFrom) -> io::Result<u64> {
+        self.file.seek(to)
+    }
 }
 
 /// A temporary file in `folder`, gone when dropped. Its name is short whatever the target's, so
@@ -226,144 +276,4 @@ fn follow_links(path: &Path) -> io::Result<PathBuf> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// What a folder holds, to see that nothing else was left there.
-    fn names_in(folder: &Path) -> Vec<String> {
-        let mut names: Vec<String> = fs::read_dir(folder)
-            .expect("a folder")
-            .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
-            .collect();
-        names.sort();
-        names
-    }
-
-    fn write_text(text: &'static str) -> impl FnOnce(&mut dyn Write) -> io::Result<()> {
-        move |writer| writer.write_all(text.as_bytes())
-    }
-
-    #[test]
-    fn a_new_file_appears_at_commit_and_not_before() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("new");
-        let file = WholeFile::prepare(&path).expect("writable");
-        assert_eq!(names_in(folder.path()), [""; 0]);
-        file.commit(write_text("whole")).expect("written");
-        assert_eq!(names_in(folder.path()), ["new"]);
-        assert_eq!(fs::read_to_string(path).expect("readable"), "whole");
-    }
-
-    #[test]
-    fn a_failed_write_keeps_the_old_file_and_leaves_nothing_else() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("kept");
-        fs::write(&path, "old").expect("written");
-        let error = WholeFile::prepare(&path)
-            .expect("writable")
-            .commit(|writer| {
-                writer.write_all(&vec![0; 100_000])?;
-                Err(io::Error::from(io::ErrorKind::StorageFull))
-            })
-            .expect_err("writing fails");
-        assert!(matches!(error, FileError::Write { .. }), "{error}");
-        assert_eq!(names_in(folder.path()), ["kept"]);
-        assert_eq!(fs::read_to_string(path).expect("readable"), "old");
-    }
-
-    #[test]
-    fn places_that_take_no_file_are_refused_with_their_reason() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let plain = folder.path().join("plain");
-        fs::write(&plain, "").expect("written");
-        let refuse = |path: PathBuf| WholeFile::prepare(path).expect_err("refused");
-        assert!(matches!(refuse(folder.path().to_owned()), FileError::IsFolder { .. }));
-        assert!(matches!(refuse(folder.path().join("new/")), FileError::IsFolder { .. }));
-        assert!(matches!(refuse(folder.path().join("no/file")), FileError::NoFolder { .. }));
-        assert!(matches!(refuse(plain.join("file")), FileError::NotAFolder { .. }));
-        assert!(matches!(refuse(folder.path().join("n".repeat(300))), FileError::Create { .. }));
-        let mut permissions = fs::metadata(&plain).expect("there").permissions();
-        permissions.set_readonly(true);
-        fs::set_permissions(&plain, permissions).expect("changed");
-        assert!(matches!(refuse(plain), FileError::Protected { .. }));
-        assert_eq!(names_in(folder.path()), ["plain"]);
-    }
-
-    #[test]
-    fn a_name_as_long_as_names_can_be_is_written() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let name = "n".repeat(255);
-        let file = WholeFile::prepare(folder.path().join(&name)).expect("writable");
-        file.commit(write_text("")).expect("written");
-        assert_eq!(names_in(folder.path()), [name]);
-    }
-
-    #[cfg(unix)]
-    mod unix {
-        use super::*;
-        use std::fs::Permissions;
-        use std::os::unix::fs::{PermissionsExt, symlink};
-
-        fn mode(path: &Path) -> u32 {
-            fs::metadata(path).expect("there").permissions().mode() & 0o7777
-        }
-
-        /// Oracle: the file `File::create` makes beside it, under whatever umask the test runs.
-        #[test]
-        fn a_new_file_gets_the_usual_permissions_and_an_old_one_keeps_its_own() {
-            let folder = tempfile::tempdir().expect("a folder");
-            let [usual, ours] = ["usual", "ours"].map(|name| folder.path().join(name));
-            File::create(&usual).expect("created");
-            WholeFile::prepare(&ours).expect("writable").commit(write_text("1")).expect("written");
-            assert_eq!(mode(&ours), mode(&usual));
-            for odd in [0o640, 0o666, 0o755] {
-                fs::set_permissions(&ours, Permissions::from_mode(odd)).expect("changed");
-                let file = WholeFile::prepare(&ours).expect("writable");
-                file.commit(write_text("2")).expect("written");
-                assert_eq!(mode(&ours), odd);
-            }
-        }
-
-        #[test]
-        fn a_link_stays_and_the_file_it_leads_to_is_written() {
-            let folder = tempfile::tempdir().expect("a folder");
-            let [real, near, far] = ["real", "near", "far"].map(|name| folder.path().join(name));
-            symlink("real", &near).expect("linked");
-            symlink(&near, &far).expect("linked");
-            for text in ["dangling", "existing"] {
-                let file = WholeFile::prepare(&far).expect("writable");
-                assert!(file.is_same_file(&WholeFile::prepare(&real).expect("writable")));
-                file.commit(write_text(text)).expect("written");
-                assert_eq!(fs::read_to_string(&real).expect("readable"), text);
-                assert_eq!(names_in(folder.path()), ["far", "near", "real"]);
-                assert!(fs::symlink_metadata(&far).expect("there").is_symlink());
-            }
-        }
-
-        #[test]
-        fn links_in_a_circle_are_refused() {
-            let folder = tempfile::tempdir().expect("a folder");
-            let [one, two] = ["one", "two"].map(|name| folder.path().join(name));
-            symlink(&one, &two).expect("linked");
-            symlink(&two, &one).expect("linked");
-            let error = WholeFile::prepare(&one).expect_err("a circle");
-            assert!(matches!(error, FileError::Create { .. }), "{error}");
-        }
-
-        #[test]
-        fn devices_are_written_directly() {
-            let null = WholeFile::prepare("/dev/null").expect("writable");
-            null.commit(write_text("gone")).expect("written");
-            assert!(!fs::metadata("/dev/null").expect("there").is_file());
-        }
-
-        #[cfg(target_os = "linux")]
-        #[test]
-        fn a_full_device_is_an_error() {
-            let full = WholeFile::prepare("/dev/full").expect("it opens");
-            let error = full.commit(write_text("text")).expect_err("full");
-            let FileError::Write { source, .. } = error else { panic!("{error}") };
-            assert_eq!(source.kind(), io::ErrorKind::StorageFull);
-        }
-    }
-}
+mod tests;

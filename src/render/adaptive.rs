@@ -157,8 +157,9 @@ impl Adaptive {
                 for (index, (x, y)) in tile.pixels().enumerate().filter(|(i, _)| changed[*i]) {
                     if let Some(refined) = &own[index].refined {
                         *colors.at_mut(x, y) = refined.color();
-                        let own_corner = u32::from(self.corners.at(x, y).rays > 0);
-                        *samples.at_mut(x, y) = 1 + own_corner + refined.points();
+                        // Corners that only neighbours wanted do not count, or it would depend on whether those are rendered.
+                        let own = !own[index].suspect || is_disputed(&self.centers, x, y);
+                        *samples.at_mut(x, y) = 1 + u32::from(own) + refined.points();
                     }
                 }
             }
@@ -177,7 +178,6 @@ impl Adaptive {
             return;
         }
         let traced = Mutex::new(Vec::new());
-        let samples = Mutex::new(&mut self.samples);
         let (pixels, centers, known) = (&self.pixels, &self.centers, &self.corners);
         crew.run(known.area(), false, stop, |sampler, scratch, tile| {
             let wants = |x: i64, y: i64, disputed: bool| {
@@ -207,14 +207,8 @@ impl Adaptive {
             scratch.places.extend(wanted.iter().map(|&(x, y)| DVec2::new(x as f64, y as f64)));
             sampler.sample(&scratch.places, &mut scratch.samples);
             let mut traced = traced.lock().unwrap_or_else(PoisonError::into_inner);
-            let mut samples = samples.lock().unwrap_or_else(PoisonError::into_inner);
             add_rays(&self.spent, &scratch.samples);
-            for (&(x, y), sample) in wanted.iter().zip(&scratch.samples) {
-                traced.push((x, y, *sample));
-                if samples.area().contains(x, y) {
-                    *samples.at_mut(x, y) += 1;
-                }
-            }
+            traced.extend(wanted.iter().zip(&scratch.samples).map(|(&(x, y), s)| (x, y, *s)));
         });
         for (x, y, sample) in traced.into_inner().unwrap_or_else(PoisonError::into_inner) {
             *self.corners.at_mut(x, y) = sample;

@@ -30,7 +30,7 @@ fn at_step(step: u32) -> f32 {
     (FIRST_STEP * (-f64::from(step) / STEPS_TO_HALF).exp2()) as f32
 }
 
-/// Refines where the squared error for each ray is largest, until the estimate is `wanted` levels or less.
+/// Refines where the squared error for each ray is largest, until the estimate is `wanted` levels or less, or `stop` says so.
 ///
 /// The threshold goes down a fixed ladder, and the picture is that of the threshold at which it ends: what is spent on the way is
 /// part of it.
@@ -38,6 +38,7 @@ pub(super) fn reach_error<S: Sampler + Send>(
     adaptive: &mut Adaptive,
     crew: &Crew<S>,
     wanted: f64,
+    stop: &(dyn Fn() -> bool + Sync),
 ) -> Outcome {
     let start = adaptive.estimated_rmse().max(f64::MIN_POSITIVE);
     let mut step = 0;
@@ -47,38 +48,41 @@ pub(super) fn reach_error<S: Sampler + Send>(
         if error <= wanted {
             return Outcome { per_ray, ..Outcome::default() };
         }
+        if stop() {
+            return Outcome { cut: true, missed_error: Some(wanted), ..Outcome::default() };
+        }
         if step > LAST_STEP || !adaptive.can_improve() {
             return Outcome { per_ray, missed_error: Some(wanted), ..Outcome::default() };
         }
         crew.meter.reach((start / error).ln() / (start / wanted).ln());
         let threshold = at_step(step);
-        adaptive.refine(crew, Threshold::PerRay(threshold), false, || false);
+        adaptive.refine(crew, Threshold::PerRay(threshold), false, stop);
         per_ray = Some(threshold);
         let steps = STEPS_TO_HALF * (adaptive.estimated_rmse() / wanted).log2() / ERROR_POWER;
         step += if steps.is_finite() { (steps * JUMP).max(1.0) as u32 } else { LAST_STEP / 4 };
     }
 }
 
-/// Refines where the squared error for each ray is largest, until `end`.
+/// Refines where the squared error for each ray is largest, until `end`, or until `stopped` says so.
 ///
 /// Each step takes a part of the time left, as predicted from the rays before; the pixels of the last one are taken by chance,
 /// so that no part of the picture is left out.
 pub(super) fn reach_time<S: Sampler + Send>(
     adaptive: &mut Adaptive,
     crew: &Crew<S>,
-    started: Instant,
-    end: Instant,
+    (started, end): (Instant, Instant),
+    stopped: &(dyn Fn() -> bool + Sync),
 ) -> Outcome {
     let whole = end.saturating_duration_since(started).as_secs_f64().max(1e-9);
-    let stop = || Instant::now() >= end;
-    if stop() {
+    let stop = || Instant::now() >= end || stopped();
+    if Instant::now() >= end {
         return Outcome { late: Some(started.elapsed()), ..Outcome::default() };
     }
     let mut seconds_per_ray = started.elapsed().as_secs_f64() / adaptive.spent().max(1) as f64;
     let mut round = 0;
     loop {
         let left = end.saturating_duration_since(Instant::now());
-        if left < SHORTEST {
+        if left < SHORTEST || stopped() {
             break;
         }
         crew.meter.reach(1.0 - left.as_secs_f64() / whole);

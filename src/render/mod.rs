@@ -1,6 +1,7 @@
 //! From a scene to a film: tiles in parallel, each a function of scene and options alone.
 
 mod adaptive;
+mod blocks;
 mod crew;
 mod goal;
 mod look;
@@ -8,6 +9,8 @@ mod plain;
 mod plane;
 mod round;
 mod thin;
+mod whole;
+mod worker;
 
 use std::{
     num::NonZeroUsize,
@@ -15,24 +18,24 @@ use std::{
     time::{Duration, Instant},
 };
 
-use glam::DVec2;
 use thiserror::Error;
 
+pub use blocks::{Account, Block, Sink, blocks};
 pub use crew::Sampler;
 
 pub use crate::trace::RayCounts;
 use crate::{
-    aa::{AntiAliasing, Sample},
-    camera::View,
+    aa::AntiAliasing,
     color::Rgb,
     film::{Film, Tile},
     scene::Scene,
-    trace::{self, BATCH, Tracer},
+    trace::Tracer,
 };
 use adaptive::Adaptive;
 use crew::{Crew, Meter};
-use plane::{Area, Plane};
+use plane::Area;
 use round::Threshold;
+use worker::Worker;
 
 /// What the user may choose; the rest is the scene's.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -95,7 +98,8 @@ pub struct Progress {
 pub struct Rendering {
     /// The picture.
     pub film: Film,
-    /// The estimated squared error of each pixel, in levels of 255, in the order of [`Film::pixels`].
+    /// The estimated squared error of each pixel, in levels of 255, in the order of [`Film::pixels`]; empty if they were not
+    /// kept.
     pub errors: Vec<f32>,
     /// The picture's estimated error against the exact average over each pixel: root mean square of all channels, in levels of
     /// 255.
@@ -155,8 +159,19 @@ pub struct Picture {
 impl Picture {
     /// The estimated error: root mean square of all channels, in levels of 255.
     pub fn estimated_rmse(&self) -> f64 {
-        let sum: f64 = self.errors.iter().copied().map(f64::from).sum();
-        (sum / self.errors.len().max(1) as f64).sqrt()
+        (self.squared_error() / self.errors.len().max(1) as f64).sqrt()
+    }
+
+    /// The estimated squared error, summed over the pixels.
+    fn squared_error(&self) -> f64 {
+        self.errors.iter().copied().map(f64::from).sum::<f64>()
+    }
+
+    fn into_block(self, number: usize, place: Tile, rays: RayCounts) -> Block {
+        let (squared_error, unsettled) = (self.squared_error(), self.outcome.unsettled as u64);
+        let account = Account { rays, squared_error, unsettled };
+        let Self { colors, samples, errors, outcome, .. } = self;
+        Block { number, place, colors, samples, errors, account, outcome }
     }
 }
 
@@ -171,25 +186,27 @@ pub fn picture<S: Sampler + Send>(
     new_sampler: &(dyn Fn() -> S + Sync),
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Picture {
+    picture_until(part, width, (aa, goal), new_sampler, progress, &|| false)
+}
+
+/// The same; a picture towards an error or until a time ends as it is when `stop` says so.
+fn picture_until<S: Sampler + Send>(
+    part: &Tile,
+    width: u32,
+    (aa, goal): (AntiAliasing, Goal),
+    new_sampler: &(dyn Fn() -> S + Sync),
+    progress: &(dyn Fn(Progress) + Sync),
+    stop: &(dyn Fn() -> bool + Sync),
+) -> Picture {
     let area = Area::of(part);
-    let pixels = area.len() as u64;
     let started = Instant::now();
+    let meter = Meter::new(progress_units(aa) * area.len() as u64, progress);
+    let crew = Crew { new_sampler, meter: &meter };
     match aa {
-        AntiAliasing::None | AntiAliasing::Grid { side: 1 } => {
-            let meter = Meter::new(pixels, progress);
-            plain::centers(&Crew { new_sampler, meter: &meter }, &area)
-        }
-        AntiAliasing::Grid { side } => {
-            let meter = Meter::new(pixels, progress);
-            plain::grid(&Crew { new_sampler, meter: &meter }, &area, side)
-        }
-        AntiAliasing::Sequence { count } => {
-            let meter = Meter::new(pixels, progress);
-            plain::sequence(&Crew { new_sampler, meter: &meter }, &area, width, count)
-        }
+        AntiAliasing::None | AntiAliasing::Grid { side: 1 } => plain::centers(&crew, &area),
+        AntiAliasing::Grid { side } => plain::grid(&crew, &area, side),
+        AntiAliasing::Sequence { count } => plain::sequence(&crew, &area, width, count),
         AntiAliasing::Adaptive { error, most } => {
-            let meter = Meter::new(2 * pixels, progress);
-            let crew = Crew { new_sampler, meter: &meter };
             let mut adaptive = Adaptive::new(&crew, &area, width, most);
             meter.reach(0.5);
             let outcome = match goal {
@@ -198,13 +215,18 @@ pub fn picture<S: Sampler + Send>(
                     let unsettled = adaptive.unsettled(error * error);
                     Outcome { unsettled, ..Outcome::default() }
                 }
-                Goal::Error(wanted) => goal::reach_error(&mut adaptive, &crew, wanted),
-                Goal::Until(end) => goal::reach_time(&mut adaptive, &crew, started, end),
+                Goal::Error(wanted) => goal::reach_error(&mut adaptive, &crew, wanted, stop),
+                Goal::Until(end) => goal::reach_time(&mut adaptive, &crew, (started, end), stop),
             };
             meter.reach(1.0);
             Picture { outcome, ..adaptive.into_picture() }
         }
     }
+}
+
+/// How much of [`Progress`] a pixel is: the adaptive mode goes over it twice.
+fn progress_units(aa: AntiAliasing) -> u64 {
+    if matches!(aa, AntiAliasing::Adaptive { .. }) { 2 } else { 1 }
 }
 
 /// Renders `scene`; `progress` is called from the worker threads after every tile.
@@ -219,7 +241,49 @@ pub fn render(
     options: &RenderOptions,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<Rendering, RenderError> {
+    let part = part(scene, options)?;
+    let whole = whole::Whole::new(&part, progress);
+    let effort = render_blocks(scene, options, &whole)?;
+    Ok(whole.into_rendering(&effort))
+}
+
+/// What a render took, apart from what is known of each block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Effort {
+    /// The threads used.
+    pub threads: usize,
+    /// The time, in seconds, without loading and writing.
+    pub seconds: f64,
+    /// The deepest level of recursion that was allowed.
+    pub depth: u32,
+}
+
+/// The part of the picture that is wanted.
+///
+/// # Errors
+/// It is empty, or not in the picture.
+pub fn part(scene: &Scene, options: &RenderOptions) -> Result<Tile, RenderError> {
+    let [width, height] = options.size.unwrap_or(scene.resolution());
+    let part = options.crop.unwrap_or(Tile { x0: 0, y0: 0, x1: width, y1: height });
+    if part.x0 >= part.x1 || part.y0 >= part.y1 || part.x1 > width || part.y1 > height {
+        return Err(RenderError::Crop { part, width, height });
+    }
+    Ok(part)
+}
+
+/// Renders the [`blocks`] of a picture of `scene` that `sink` wants, and hands them to it.
+///
+/// Each block is the same whichever others are rendered, in whatever order and by however many threads.
+///
+/// # Errors
+/// The threads cannot be started.
+pub fn render_blocks(
+    scene: &Scene,
+    options: &RenderOptions,
+    sink: &dyn Sink,
+) -> Result<Effort, RenderError> {
     let started = Instant::now();
+    let part = part(scene, options)?;
     let [width, height] = options.size.unwrap_or(scene.resolution());
     let depth = options.depth.unwrap_or(scene.depth());
     let cores = || std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
@@ -228,75 +292,24 @@ pub fn render(
         .num_threads(threads)
         .build()
         .map_err(|source| RenderError::Threads { threads, source })?;
-
-    let view = scene.camera().view(width, height);
-    let part = options.crop.unwrap_or(Tile { x0: 0, y0: 0, x1: width, y1: height });
-    if part.x0 >= part.x1 || part.y0 >= part.y1 || part.x1 > width || part.y1 > height {
-        return Err(RenderError::Crop { part, width, height });
-    }
-    let rays = Mutex::new(RayCounts::default());
+    let (view, mode) = (scene.camera().view(width, height), (options.aa, options.goal));
     let is_adaptive = matches!(options.aa, AntiAliasing::Adaptive { .. });
     let thin = is_adaptive.then(|| thin::least_samples(scene, &view, &Area::of(&part))).flatten();
-    let new_sampler = || Worker {
-        tracer: Tracer::new(scene, depth),
-        view,
-        traced: Vec::new(),
-        thin: thin.as_ref(),
-        counts: &rays,
+    let block = |number: usize, place: &Tile, progress: &(dyn Fn(Progress) + Sync)| {
+        let rays = Mutex::new(RayCounts::default());
+        let new_sampler = || Worker {
+            tracer: Tracer::new(scene, depth),
+            view,
+            traced: Vec::new(),
+            thin: thin.as_ref(),
+            counts: &rays,
+        };
+        let stop = || sink.is_stopped();
+        let picture = picture_until(place, width, mode, &new_sampler, progress, &stop);
+        let rays = rays.into_inner().unwrap_or_else(PoisonError::into_inner);
+        picture.into_block(number, *place, rays)
     };
-    let picture =
-        pool.install(|| picture(&part, width, options.aa, options.goal, &new_sampler, progress));
-    let estimated_rmse = picture.estimated_rmse();
-    let Picture { colors, samples, errors, outcome, .. } = picture;
-    Ok(Rendering {
-        film: Film::from_parts(part.width(), part.height(), colors, samples),
-        errors,
-        estimated_rmse,
-        outcome,
-        rays: rays.into_inner().unwrap_or_else(PoisonError::into_inner),
-        threads,
-        seconds: started.elapsed().as_secs_f64(),
-        depth,
-    })
-}
-
-/// Samples a scene through its camera; what it traced is added to `counts` in the end.
-struct Worker<'a> {
-    tracer: Tracer<'a>,
-    view: View,
-    traced: Vec<trace::Sample>,
-    /// The least samples of pixels with something thin, if there are any.
-    thin: Option<&'a Plane<u32>>,
-    counts: &'a Mutex<RayCounts>,
-}
-
-impl Sampler for Worker<'_> {
-    fn least_samples(&self, x: u32, y: u32) -> u32 {
-        self.thin.map_or(0, |thin| *thin.at(i64::from(x), i64::from(y)))
-    }
-
-    fn has_thin(&self) -> bool {
-        self.thin.is_some()
-    }
-
-    fn sample(&mut self, places: &[DVec2], samples: &mut Vec<Sample>) {
-        for some in places.chunks(BATCH) {
-            let dirs = some.iter().map(|place| self.view.direction(*place));
-            self.tracer.trace(self.view.eye(), dirs, &mut self.traced);
-            samples.extend(self.traced.iter().map(|traced| Sample {
-                // A NaN, which no valid scene has, would be black.
-                color: traced.color.max(Rgb::ZERO).min(Rgb::ONE),
-                signature: traced.signature,
-                cell: traced.cell,
-                rays: traced.rays,
-            }));
-        }
-    }
-}
-
-impl Drop for Worker<'_> {
-    fn drop(&mut self) {
-        let mut counts = self.counts.lock().unwrap_or_else(PoisonError::into_inner);
-        *counts = *counts + self.tracer.counts();
-    }
+    let places = blocks(&part, options.aa, options.goal);
+    pool.install(|| blocks::run(&places, progress_units(options.aa), sink, &block));
+    Ok(Effort { threads, seconds: started.elapsed().as_secs_f64(), depth })
 }

@@ -9,6 +9,7 @@ pub mod desc;
 pub mod error;
 pub mod format;
 pub mod generators;
+mod hash;
 pub mod load;
 pub mod nff;
 pub mod obj;

@@ -93,6 +93,16 @@ impl Image {
         })
     }
 
+    /// Columns and rows of texels.
+    pub(crate) fn size(&self) -> [usize; 2] {
+        [self.width, self.height]
+    }
+
+    /// The levels of all texels, three bytes each, row by row from the top.
+    pub(crate) fn bytes(&self) -> &[u8] {
+        self.texels.as_flattened()
+    }
+
     /// The colour at `uv`, with (0, 0) the lower left corner of the picture and (1, 1) the upper right.
     ///
     /// Bilinear between the four texels around the place, whose centres lie half a texel inside the picture; beyond the

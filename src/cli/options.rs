@@ -1,0 +1,213 @@
+//! From flags to what is rendered.
+
+use std::time::{Duration, Instant};
+
+use anyhow::anyhow;
+use image::RgbImage;
+use whitted::aa::AntiAliasing;
+use whitted::classic::CLASSIC_SIZE;
+use whitted::film::{Label, Share, Tile, share};
+use whitted::render::{Goal, RenderOptions};
+use whitted::scene::Scene;
+
+use super::args::{RenderArgs, Rules};
+use super::failure::Failure;
+use super::memory;
+
+/// What writing takes, and what passed before the clock was looked at, at most: kept free at the end of a time limit.
+const WRITE_SECONDS: f64 = 0.012;
+const WRITE_SECONDS_PER_PIXEL: f64 = 4e-8;
+
+/// The most rays per pixel of a render towards a goal, unless the mode says so.
+const MOST_RAYS_FOR_GOAL: u32 = 1024;
+
+/// The classical rules leave no choice in these.
+pub(crate) fn check_classic(args: &RenderArgs) -> Result<(), Failure> {
+    let chosen = [
+        ("--size", args.size.is_some()),
+        ("--aa", args.aa.is_some()),
+        ("--depth", args.depth.is_some()),
+        ("--crop", args.crop.is_some()),
+        ("--tile", args.tile.is_some()),
+        ("--resume", args.resume),
+        ("--max-error", args.max_error.is_some()),
+        ("--time-limit", args.time_limit.is_some()),
+    ];
+    match chosen.iter().find(|(_, is_given)| *is_given) {
+        Some((flag, _)) if args.rules == Rules::Classic => Err(Failure::usage(anyhow!(
+            "--rules classic has its own size, rays and depth; leave out {flag}"
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// A picture whose pixels depend on each other, or on the clock, cannot be rendered in parts or go on later.
+pub(crate) fn check_parts(args: &RenderArgs) -> Result<(), Failure> {
+    let goal = if args.max_error.is_some() { "--max-error" } else { "--time-limit" };
+    let has_goal = args.max_error.is_some() || args.time_limit.is_some();
+    for (flag, is_given) in [("--tile", args.tile.is_some()), ("--resume", args.resume)] {
+        if is_given && has_goal {
+            return Err(Failure::usage(anyhow!(
+                "{flag} needs pixels that depend on the scene and options alone, but {goal} shares the rays out over the \
+                 whole picture; use --aa adaptive:ERROR instead"
+            )));
+        }
+    }
+    let several = args.tile.as_ref().is_some_and(|shares| shares.0.len() > 1);
+    for (flag, path) in [("--output", &args.output), ("--stats", &args.stats)] {
+        let is_stdout = path.as_ref().is_some_and(|path| path.as_os_str() == "-");
+        if is_stdout && (several || (flag == "--output" && args.resume)) {
+            let reason =
+                if several { "several tiles need a file each" } else { "--resume needs a file" };
+            return Err(Failure::usage(anyhow!("{flag} - is standard output, but {reason}")));
+        }
+    }
+    if several && args.reference.is_some() {
+        return Err(Failure::usage(anyhow!(
+            "--reference compares with one picture; give one tile"
+        )));
+    }
+    Ok(())
+}
+
+/// The size of the whole picture.
+pub(crate) fn size(args: &RenderArgs, scene: &Scene) -> [u32; 2] {
+    match args.rules {
+        Rules::Classic => [CLASSIC_SIZE; 2],
+        Rules::Whitted => args.size.unwrap_or(scene.resolution()),
+    }
+}
+
+/// What the flags ask for, for one share of the picture if that is given.
+pub(crate) fn options(
+    args: &RenderArgs,
+    scene: &Scene,
+    part: Option<Share>,
+    started: Instant,
+) -> Result<RenderOptions, Failure> {
+    let [width, height] = size(args, scene);
+    if let Some(crop) = args.crop
+        && (crop.x1 > width || crop.y1 > height)
+    {
+        return Err(Failure::usage(anyhow!(
+            "--crop {},{},{},{} is not inside of the picture, {width}x{height} pixels",
+            crop.x0,
+            crop.y0,
+            crop.x1,
+            crop.y1
+        )));
+    }
+    let crop = match part {
+        None => args.crop,
+        Some(part) => Some(
+            share(width, height, part)
+                .map_err(|error| Failure::usage(anyhow::Error::from(error).context("--tile")))?,
+        ),
+    };
+    let goal = match (args.max_error, args.time_limit) {
+        (Some(error), _) => Goal::Error(error),
+        (None, Some(seconds)) => {
+            let [width, height] = crop.map_or([width, height], |c| [c.width(), c.height()]);
+            let pixels = f64::from(width) * f64::from(height);
+            let writing = WRITE_SECONDS + WRITE_SECONDS_PER_PIXEL * pixels;
+            Goal::Until(started + Duration::from_secs_f64((seconds - writing).max(0.0)))
+        }
+        (None, None) => Goal::Mode,
+    };
+    let aa = match (args.aa, goal) {
+        (None, Goal::Mode) => scene.aa().unwrap_or_default(),
+        (None, _) => AntiAliasing::Adaptive { error: 0.0, most: MOST_RAYS_FOR_GOAL },
+        (Some(aa @ AntiAliasing::Adaptive { .. }), _) | (Some(aa), Goal::Mode) => aa,
+        (Some(aa), _) => {
+            let flag = if args.max_error.is_some() { "--max-error" } else { "--time-limit" };
+            return Err(Failure::usage(anyhow!(
+                "{flag} chooses the rays of each pixel itself, but --aa {aa} fixes them; leave --aa out or use \
+                 adaptive"
+            )));
+        }
+    };
+    let (size, depth, threads) = (args.size, args.depth, args.threads);
+    Ok(RenderOptions { size, aa, depth, threads, crop, goal })
+}
+
+/// What the picture file says of itself.
+pub(crate) fn label(
+    args: &RenderArgs,
+    scene: &Scene,
+    hash: &str,
+    options: &RenderOptions,
+    share: Option<Share>,
+) -> Label {
+    let [width, height] = size(args, scene);
+    let mut words = match args.rules {
+        Rules::Classic => vec!["rules=classic".to_owned()],
+        Rules::Whitted => vec![
+            format!("aa={}", options.aa),
+            format!("depth={}", options.depth.unwrap_or(scene.depth())),
+        ],
+    };
+    words.extend(args.max_error.map(|error| format!("max-error={error}")));
+    words.extend(args.time_limit.map(|seconds| format!("time-limit={seconds}")));
+    let whole = Tile { x0: 0, y0: 0, x1: width, y1: height };
+    let part = options.crop.filter(|crop| *crop != whole);
+    Label {
+        software: Label::this_software(),
+        scene: hash.to_owned(),
+        size: [width, height],
+        options: words.join(" "),
+        part,
+        share: share.filter(|_| part.is_some()),
+        missing: 0,
+    }
+}
+
+/// A reference of another size is better refused before the render than after it.
+pub(crate) fn check_reference(label: &Label, reference: Option<&RgbImage>) -> Result<(), Failure> {
+    let Some(reference) = reference else { return Ok(()) };
+    let (width, height) = (label.place().width(), label.place().height());
+    if reference.dimensions() == (width, height) {
+        return Ok(());
+    }
+    Err(Failure::usage(anyhow!(
+        "--reference: the picture to render has {width}x{height} pixels, the reference {}x{}; choose one of the \
+         same size",
+        reference.width(),
+        reference.height()
+    )))
+}
+
+/// A whole picture that no memory holds is refused before the scene is read.
+pub(crate) fn check_size(args: &RenderArgs) -> Result<(), Failure> {
+    match args.size {
+        Some(size) if args.tile.is_none() && args.crop.is_none() => check_most(size),
+        _ => Ok(()),
+    }
+}
+
+fn check_most([width, height]: [u32; 2]) -> Result<(), Failure> {
+    let needed = memory::picture_bytes(width, height);
+    if needed <= memory::MOST_BYTES {
+        return Ok(());
+    }
+    let (needed, most) = (memory::readable(needed), memory::readable(memory::MOST_BYTES));
+    Err(Failure::usage(anyhow!(
+        "--size {width}x{height} needs {needed} of memory; choose a size that needs at most {most}, or render it in smaller \
+         parts with --tile and join them with `whitted merge`"
+    )))
+}
+
+/// A picture larger than the memory at hand would end the program, or others, without a word.
+pub(crate) fn check_memory(label: &Label) -> Result<(), Failure> {
+    let (width, height) = (label.place().width(), label.place().height());
+    check_most([width, height])?;
+    let needed = memory::picture_bytes(width, height);
+    match memory::available().map(u128::from) {
+        Some(available) if needed > available => Err(anyhow!(
+            "a picture of {width}x{height} pixels needs {} of memory, of which {} are free; choose \
+             a smaller --size, or render it in parts with --tile",
+            memory::readable(needed),
+            memory::readable(available),
+        ))?,
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,54 @@
+//! Rays through the pixels of a scene's picture.
+
+use std::sync::{Mutex, PoisonError};
+
+use glam::DVec2;
+
+use super::{RayCounts, crew::Sampler, plane::Plane};
+use crate::{
+    aa::Sample,
+    camera::View,
+    color::Rgb,
+    trace::{self, BATCH, Tracer},
+};
+
+/// Samples a scene through its camera; what it traced is added to `counts` in the end.
+pub(super) struct Worker<'a> {
+    pub(super) tracer: Tracer<'a>,
+    pub(super) view: View,
+    pub(super) traced: Vec<trace::Sample>,
+    /// The least samples of pixels with something thin, if there are any.
+    pub(super) thin: Option<&'a Plane<u32>>,
+    pub(super) counts: &'a Mutex<RayCounts>,
+}
+
+impl Sampler for Worker<'_> {
+    fn least_samples(&self, x: u32, y: u32) -> u32 {
+        self.thin.map_or(0, |thin| *thin.at(i64::from(x), i64::from(y)))
+    }
+
+    fn has_thin(&self) -> bool {
+        self.thin.is_some()
+    }
+
+    fn sample(&mut self, places: &[DVec2], samples: &mut Vec<Sample>) {
+        for some in places.chunks(BATCH) {
+            let dirs = some.iter().map(|place| self.view.direction(*place));
+            self.tracer.trace(self.view.eye(), dirs, &mut self.traced);
+            samples.extend(self.traced.iter().map(|traced| Sample {
+                // A NaN, which no valid scene has, would be black.
+                color: traced.color.max(Rgb::ZERO).min(Rgb::ONE),
+                signature: traced.signature,
+                cell: traced.cell,
+                rays: traced.rays,
+            }));
+        }
+    }
+}
+
+impl Drop for Worker<'_> {
+    fn drop(&mut self) {
+        let mut counts = self.counts.lock().unwrap_or_else(PoisonError::into_inner);
+        *counts = *counts + self.tracer.counts();
+    }
+}

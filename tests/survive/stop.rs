@@ -1,0 +1,312 @@
+//! Signals, sudden death, full disks and deleted folders at any moment.
+
+use std::fs;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use super::{done, folder, json, names_in, read, refused, run, said, whitted};
+
+/// A picture of many small blocks that takes a moment.
+const PICTURE: [&str; 5] = ["render", "--size", "400x300", "--aa", "adaptive:1.5,4096"];
+
+/// The undivided picture, for comparing.
+fn reference(at: &Path, kind: &str) -> Vec<u8> {
+    let name = format!("reference.{kind}");
+    done(&run(
+        at,
+        &[&PICTURE[..], &["-o", &name, "--quiet", "--stats", "reference.json"]].concat(),
+    ));
+    let bytes = read(at, &name);
+    fs::remove_file(at.join(name)).expect("there");
+    bytes
+}
+
+fn signal(child: &Child, name: &str) {
+    let id = child.id().to_string();
+    let sent = Command::new("kill").args([name, &id]).stderr(Stdio::null()).status();
+    sent.expect("kill is there");
+}
+
+/// Starts a render that tells its progress, and waits until at least `share` of it is done, or it ended.
+fn until(at: &Path, share: f64, more: &[&str]) -> Child {
+    let arguments = [&PICTURE[..], &["--progress", "json"], more].concat();
+    let mut child = whitted(at, &arguments).stderr(Stdio::piped()).spawn().expect("it runs");
+    let mut lines = BufReader::new(child.stderr.take().expect("piped"));
+    let mut line = String::new();
+    while lines.read_line(&mut line).is_ok_and(|length| length > 0) {
+        if line.starts_with('{') {
+            let told = json(line.as_bytes());
+            let number = |name: &str| told[name].as_f64().expect("a number");
+            if number("done") >= share * number("total") {
+                break;
+            }
+        }
+        line.clear();
+    }
+    // What is still to come is read for it, or it would find nobody there.
+    child.stderr = Some(lines.into_inner());
+    child
+}
+
+fn end(child: Child) -> Output {
+    child.wait_with_output().expect("it ends")
+}
+
+/// No file is broken: a picture is whole and opens, and nothing temporary is under a final name.
+#[track_caller]
+fn assert_sound(at: &Path, name: &str) {
+    if at.join(name).exists() && name.ends_with("png") {
+        image::open(at.join(name)).expect("a whole picture");
+    }
+}
+
+#[test]
+fn a_signal_leaves_a_picture_and_a_checkpoint_from_which_it_goes_on() {
+    for (name, code, kind) in [("-INT", 130, "png"), ("-TERM", 143, "exr")] {
+        let folder = folder();
+        let at = folder.path();
+        let expected = reference(at, kind);
+        let file = format!("a b.{kind}");
+        let child = until(at, 0.3, &["-o", &file]);
+        signal(&child, name);
+        let output = end(child);
+        let checkpoint = format!("{file}.checkpoint");
+        refused(&output, code, &["% done", "checkpoint: ", "picture so far", " --resume"]);
+        let told = said(&output);
+        assert!(names_in(at).contains(&checkpoint), "{:?}", names_in(at));
+        if kind == "png" {
+            let picture = image::open(at.join(&file)).expect("a whole PNG").into_rgba8();
+            let clear = picture.pixels().filter(|pixel| pixel.0[3] == 0).count();
+            assert!(clear > 0 && clear < 400 * 300, "{clear} transparent");
+            assert!(picture.pixels().all(|p| p.0[3] == 255 || p.0[3] == 0));
+            // The line that it gave is the one to go on with.
+            let line = told.lines().find_map(|line| line.trim().strip_prefix("go on with: "));
+            let line = line.expect("the command").to_owned();
+            let output = Command::new("sh").args(["-c", &line]).current_dir(at).output();
+            done(&output.expect("a shell"));
+        } else {
+            let more = ["--resume", "--quiet", "-o", &file, "--stats", "again.json"];
+            done(&run(at, &[&PICTURE[..], &more].concat()));
+            let (once, again) = (json(&read(at, "reference.json")), json(&read(at, "again.json")));
+            assert_eq!(once["rays"], again["rays"]);
+            assert_eq!(once["error"], again["error"]);
+        }
+        assert!(read(at, &file) == expected, "{name}");
+        assert!(!names_in(at).contains(&checkpoint), "it is deleted in the end");
+    }
+}
+
+/// Random moments: `WHITTED_KILLS=200` for a long run, a handful otherwise.
+#[test]
+fn killed_at_any_moment_it_goes_on_to_the_same_picture() {
+    let rounds = std::env::var("WHITTED_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(4);
+    let folder = folder();
+    let at = folder.path();
+    let expected = reference(at, "png");
+    let took = {
+        let started = Instant::now();
+        done(&run(at, &[&PICTURE[..], &["-o", "t.png", "--quiet"]].concat()));
+        started.elapsed()
+    };
+    let mut random = 7_u64;
+    let mut uniform = || {
+        random =
+            random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (random >> 40) as f64 / f64::from(1 << 24)
+    };
+    let names = ["-KILL", "-INT", "-TERM", "-KILL"];
+    let (mut hits, mut resumed, mut kills) = (0, 0, 0);
+    for round in 0..rounds {
+        for left in ["a.png", "a.png.checkpoint", "a.png.checkpoint.old"] {
+            let _ = fs::remove_file(at.join(left));
+        }
+        let file = ["-o", "a.png", "--checkpoint", "0.03", "--resume"];
+        let mut deaths = 0;
+        // Killed up to three times, then left alone.
+        loop {
+            let arguments = [&PICTURE[..], &file].concat();
+            let mut command = whitted(at, &arguments);
+            let child = command.stderr(Stdio::piped()).stdout(Stdio::null()).spawn().expect("runs");
+            if deaths < 3 {
+                std::thread::sleep(took.mul_f64(0.7 * uniform()));
+                let name = names[kills % names.len()];
+                signal(&child, name);
+                (deaths, kills) = (deaths + 1, kills + 1);
+            }
+            let output = end(child);
+            let told = said(&output);
+            resumed += usize::from(told.contains("going on from"));
+            assert_sound(at, "a.png");
+            match output.status.code() {
+                Some(0) => break,
+                None | Some(130 | 143) => hits += 1,
+                Some(code) => panic!("round {round}: {code}: {told}"),
+            }
+        }
+        assert!(read(at, "a.png") == expected, "round {round}");
+        let left = names_in(at).into_iter().filter(|name| name.ends_with("checkpoint"));
+        assert_eq!(left.count(), 0, "round {round}");
+    }
+    let tally = format!("{rounds} pictures: {kills} signals, {hits} hit, {resumed} resumed\n");
+    let _ = std::io::stderr().write_all(tally.as_bytes());
+    assert!(hits > 0, "no signal came before the end");
+}
+
+#[test]
+fn a_checkpoint_of_other_options_is_refused() {
+    let folder = folder();
+    let at = folder.path();
+    let child = until(at, 0.2, &["-o", "a.png"]);
+    signal(&child, "-INT");
+    refused(&end(child), 130, &["interrupted"]);
+    let before = read(at, "a.png.checkpoint");
+    let other = ["render", "--size", "400x300", "--aa", "grid:2", "-o", "a.png", "--resume"];
+    refused(&run(at, &other), 5, &["a.png.checkpoint", "aa: grid:2 here, adaptive:1.5,4096 there"]);
+    let other = [&PICTURE[..], &["-o", "a.png", "--resume", "--fov", "20"]].concat();
+    refused(&run(at, &other), 5, &["a.png.checkpoint", "scene: "]);
+    assert!(read(at, "a.png.checkpoint") == before, "a refusal changes nothing");
+    // Forgetting --resume costs nothing either.
+    let again = [&PICTURE[..], &["-o", "a.png", "--checkpoint", "0.01"]].concat();
+    let output = run(at, &again);
+    done(&output);
+    assert!(said(&output).contains("--resume goes on from it"), "{}", said(&output));
+    assert!(read(at, "a.png.checkpoint.old") == before);
+}
+
+/// One block of 16 x 16 pixels with a million rays each: it does not end before the second signal.
+#[test]
+fn a_second_signal_stops_at_once_and_leaves_old_files_whole() {
+    let folder = folder();
+    let at = folder.path();
+    fs::write(at.join("a.png"), "old").expect("written");
+    let endless = ["render", "--size", "16x16", "--aa", "sobol:1048576", "-o", "a.png"];
+    let mut child = whitted(at, &endless).stderr(Stdio::piped()).spawn().expect("it runs");
+    std::thread::sleep(Duration::from_millis(700));
+    signal(&child, "-INT");
+    let mut told = [0; 9];
+    let mut pipe = child.stderr.take().expect("piped");
+    pipe.read_exact(&mut told).expect("it says something");
+    assert_eq!(&told, b"stopping:");
+    let started = Instant::now();
+    signal(&child, "-TERM");
+    assert_eq!(child.wait().expect("it ends").code(), Some(143));
+    assert!(started.elapsed() < Duration::from_secs(2), "{:?}", started.elapsed());
+    assert_eq!(read(at, "a.png"), b"old");
+    assert_eq!(names_in(at), ["a.png"]);
+}
+
+/// While the scene is read there is nothing to keep.
+#[test]
+fn a_signal_before_the_render_ends_the_program_with_its_code() {
+    let folder = folder();
+    let scene = ["render", "spheres", "--objects", "3000000", "--size", "8x8"];
+    let child = whitted(folder.path(), &scene).stderr(Stdio::null()).spawn().expect("it runs");
+    std::thread::sleep(Duration::from_millis(300));
+    signal(&child, "-INT");
+    assert_eq!(end(child).status.code(), Some(130));
+    assert_eq!(names_in(folder.path()), [""; 0]);
+}
+
+#[test]
+fn a_picture_towards_an_error_or_a_time_is_left_as_it_is() {
+    for goal in [["--max-error", "0.01"], ["--time-limit", "600"]] {
+        let folder = folder();
+        let at = folder.path();
+        let arguments = [&["render", "--size", "150x100", "-o", "a.png"][..], &goal].concat();
+        let child = whitted(at, &arguments).stderr(Stdio::piped()).spawn().expect("it runs");
+        std::thread::sleep(Duration::from_millis(900));
+        signal(&child, "-INT");
+        refused(&end(child), 130, &["a.png is what there was until then"]);
+        let picture = image::open(at.join("a.png")).expect("a whole PNG");
+        assert_eq!(picture.color(), image::ColorType::Rgb8, "{goal:?}: all of it is there");
+        assert_eq!(names_in(at), ["a.png"]);
+    }
+}
+
+#[test]
+fn tiles_that_are_stopped_go_on_where_they_were() {
+    let folder = folder();
+    let at = folder.path();
+    let expected = reference(at, "png");
+    let tiles = ["--tile", "1/3,2/3,3/3", "-o", "a.png"];
+    // The second tile is in work when the first is finished.
+    let mut child = until(at, 1.0, &tiles);
+    std::thread::sleep(Duration::from_millis(100));
+    signal(&child, "-INT");
+    let mut rest = String::new();
+    let _ = child.stderr.take().expect("piped").read_to_string(&mut rest);
+    assert_eq!(child.wait().expect("it ends").code(), Some(130), "{rest}");
+    assert!(at.join("a-1of3.png").exists() && !at.join("a-3of3.png").exists());
+    let output = run(at, &[&PICTURE[..], &tiles, &["--resume"]].concat());
+    done(&output);
+    assert!(said(&output).contains("a-1of3.png is finished already"), "{}", said(&output));
+    done(&run(at, &["merge", "a-1of3.png", "a-2of3.png", "a-3of3.png", "-o", "all.png"]));
+    assert!(read(at, "all.png") == expected);
+}
+
+/// A limit on the size of files stands in for a disk without room: writing fails halfway in the same way.
+#[test]
+fn a_full_disk_costs_neither_the_checkpoint_nor_the_old_picture() {
+    let folder = folder();
+    let at = folder.path();
+    let expected = reference(at, "exr");
+    fs::write(at.join("a.exr"), "old").expect("written");
+    let program = env!("CARGO_BIN_EXE_whitted");
+    // In units of 512 or 1024 bytes: room for part of the checkpoint, which takes 16 bytes a pixel, but not for the picture.
+    let line = format!(
+        "trap '' XFSZ; ulimit -f 600; exec {program} {} -o a.exr --checkpoint 0.02 --resume",
+        PICTURE.join(" ")
+    );
+    let output = Command::new("sh").args(["-c", &line]).current_dir(at).output().expect("a shell");
+    refused(
+        &output,
+        1,
+        &["a.exr: could not be written", "is kept in a.exr.checkpoint", "--resume"],
+    );
+    assert_eq!(read(at, "a.exr"), b"old");
+    let output = run(at, &[&PICTURE[..], &["-o", "a.exr", "--resume"]].concat());
+    done(&output);
+    assert!(said(&output).contains("going on from a.exr.checkpoint"), "{}", said(&output));
+    assert!(read(at, "a.exr") == expected);
+}
+
+#[test]
+fn a_folder_deleted_on_the_way_is_made_again() {
+    let folder = folder();
+    let at = folder.path();
+    let expected = reference(at, "png");
+    for stopped in [false, true] {
+        fs::create_dir(at.join("sub")).expect("created");
+        let child = until(at, 0.3, &["-o", "sub/a.png", "--checkpoint", "0.02"]);
+        fs::remove_dir_all(at.join("sub")).expect("deleted");
+        if stopped {
+            signal(&child, "-INT");
+        }
+        let output = end(child);
+        if stopped {
+            refused(&output, 130, &["sub/a.png.checkpoint"]);
+            done(&run(at, &[&PICTURE[..], &["-o", "sub/a.png", "--resume"]].concat()));
+        } else {
+            done(&output);
+        }
+        assert!(read(at, "sub/a.png") == expected, "stopped: {stopped}");
+        assert_eq!(names_in(&at.join("sub")), ["a.png"]);
+        fs::remove_dir_all(at.join("sub")).expect("deleted");
+    }
+}
+
+/// A file where the folder was: nothing can be written there any more.
+#[test]
+fn a_place_that_cannot_be_written_any_more_is_an_error_that_says_so() {
+    let folder = folder();
+    let at = folder.path();
+    fs::create_dir(at.join("sub")).expect("created");
+    let child = until(at, 0.3, &["-o", "sub/a.png"]);
+    fs::remove_dir_all(at.join("sub")).expect("deleted");
+    fs::write(at.join("sub"), "in the way").expect("written");
+    let output = end(child);
+    refused(&output, 1, &["sub/a.png", "could not be written"]);
+    assert_eq!(read(at, "sub"), b"in the way");
+}
