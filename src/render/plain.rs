@@ -14,8 +14,8 @@ use crate::{
     aa::{
         Sample,
         estimate::{
-            Spread, bare_sequence_share, grid_busy, grid_quarters, grid_quarters_share, grid_share,
-            grid_unseen, sequence_unseen,
+            GRID_OF_FOUR, Spread, bare_sequence_share, grid_unseen, interleaved, interleaved_share,
+            sequence_unseen,
         },
         grid_places,
         levels::levels,
@@ -60,12 +60,12 @@ pub(super) fn grid<S: Sampler + Send>(crew: &Crew<S>, area: &Area, side: u32) ->
         places.extend(grid_places(DVec2::new(x as f64, y as f64), side));
     };
     let judge = |samples: &[Sample], spread: &Spread| {
-        if side >= 4 {
-            return grid_quarters_share(side) * grid_quarters(samples, side as usize);
-        }
         // Without any edge it is at most half of what it is at one.
-        let share = grid_share(side) * if spread.kinds() == 1 { 0.5 } else { 1.0 };
-        spread.error(share, grid_busy(samples.iter().map(|sample| sample.signature), side))
+        let part = if spread.kinds() == 1 { 0.5 } else { 1.0 };
+        part * match side {
+            2 => spread.error(GRID_OF_FOUR, 0.0),
+            _ => interleaved_share(side) * interleaved(samples, side as usize),
+        }
     };
     even(crew, area, side * side, places, judge, grid_unseen(side))
 }
