@@ -13,7 +13,7 @@ use super::{
     Accel,
     beam::Beam,
     crossed,
-    frame::{TreeRay, above},
+    frame::{FAR_SQUARED, NEAR_SQUARED, TreeRay, above},
     leaf::{Candidates, LeafRay},
     node::{Child, Content, Node},
     simd::{Kernel, Simd},
@@ -40,6 +40,15 @@ const WIDEST: f32 = 0.25;
 /// The stack of the walk: each node on the way down leaves at most seven of its children to be visited later.
 const STACK: usize = MAX_DEPTH * 7 + 1;
 
+/// The limit of a lane that is not in use, or whose ray passes the tree by.
+const ASIDE: f32 = -1.0;
+
+/// The limit of a lane whose ray is blocked.
+const BLOCKED: f32 = -2.0;
+
+/// Room for the roundings of a ray's start and end along the beam's axis.
+const START_SLACK: f32 = 1.0 / (1 << 20) as f32;
+
 /// A number in single precision for each lane.
 type Singles = [f32; LANES];
 
@@ -59,6 +68,9 @@ struct Packet {
     inverse: [Singles; 3],
     /// Lengths of the direction here for each length of the direction in the world.
     rate: Column,
+    /// The parameter at which a ray arrives, and how much later than computed its end may be.
+    arrival: Column,
+    slack: Column,
     /// Beyond this parameter a ray asks for nothing more; negative for a lane that is done or not in use.
     limit: Singles,
     beam: Beam,
@@ -78,38 +90,81 @@ impl Packet {
     /// be traced one by one. They end at `end`.
     #[inline(always)]
     fn new(tree: &Tree, rays: &RayLanes, point: DVec3, toward: f64, end: f64) -> Option<Self> {
-        let point = tree.frame.point(point);
-        if rays.used.count_ones() < FEWEST || !(point.length_squared() <= 4.0) {
+        if rays.used.count_ones() < FEWEST {
             return None;
         }
-        let beam = Beam::around(point, rays, toward)?;
+        let beam = Beam::around(tree.frame.point(point), rays, toward)?;
         if beam.spread() > WIDEST {
             return None;
         }
-        let zero = [[0.0; LANES]; 3];
-        let limit = [-1.0; LANES];
-        let mut packet =
-            Self { origin: zero, dir: zero, inverse: zero, rate: [0.0; LANES], limit, beam };
-        let mut fits = [0_u64; LANES];
+        let (zero, none) = ([[0.0; LANES]; 3], [0.0; LANES]);
+        let mut packet = Self {
+            origin: zero,
+            dir: zero,
+            inverse: zero,
+            rate: none,
+            arrival: none,
+            slack: none,
+            limit: [ASIDE; LANES],
+            beam,
+        };
+        let mut distances = [0.0; LANES];
         for k in 0..LANES {
-            let (near, is_near) = tree.frame.near(rays.origin.get(k), rays.dir.get(k));
-            let inverse = near.inverse();
-            for axis in 0..3 {
-                packet.origin[axis][k] = near.origin[axis];
-                packet.dir[axis][k] = near.dir[axis];
-                packet.inverse[axis][k] = inverse[axis];
-            }
-            packet.rate[k] = near.rate;
-            fits[k] = u64::from(is_near);
+            let (ray, squared) = tree.frame.beside(rays.origin.get(k), rays.dir.get(k));
+            packet.set(k, &ray);
+            distances[k] = squared;
         }
-        if lanes(rays.used).any(|k| fits[k] == 0) {
+        // Not within, rather than beyond: NaN is neither.
+        let not_within = |squared| rays.used & !within(&distances, squared);
+        if not_within(FAR_SQUARED) != 0 {
             return None;
         }
+        let (far, mut met) = (not_within(NEAR_SQUARED), rays.used);
+        if far != 0 {
+            met &= packet.bring(tree, rays, far);
+        }
         for k in 0..LANES {
-            let is_used = rays.used >> k & 1 != 0;
-            packet.limit[k] = if is_used { limit_above(end * packet.rate[k]) } else { -1.0 };
+            let limit = packet.end_above(k, end);
+            let is_open = (met >> k & 1 != 0) & (limit >= 0.0);
+            packet.limit[k] = if is_open { limit } else { ASIDE };
         }
         Some(packet)
+    }
+
+    /// Replaces the ray of a lane that starts in the frame.
+    #[inline(always)]
+    fn set(&mut self, k: usize, ray: &TreeRay) {
+        let inverse = ray.inverse();
+        for axis in 0..3 {
+            self.origin[axis][k] = ray.origin[axis];
+            self.dir[axis][k] = ray.dir[axis];
+            self.inverse[axis][k] = inverse[axis];
+        }
+        self.rate[k] = ray.rate;
+    }
+
+    /// Brings the rays of the lanes `far` to the tree, and returns all lanes but those that pass it by.
+    #[inline(always)]
+    fn bring(&mut self, tree: &Tree, rays: &RayLanes, far: u64) -> u64 {
+        let mut passes = [0_u64; LANES];
+        for k in 0..LANES {
+            let is_far = far >> k & 1 != 0;
+            let (ray, arrives) = tree.frame.from_afar(rays.origin.get(k), rays.dir.get(k));
+            for axis in 0..3 {
+                let x = self.origin[axis][k];
+                self.origin[axis][k] = if is_far { ray.origin[axis] } else { x };
+            }
+            self.arrival[k] = if is_far { ray.arrival } else { 0.0 };
+            self.slack[k] = if is_far { ray.slack } else { 0.0 };
+            passes[k] = u64::from(is_far & !arrives);
+        }
+        !(0..LANES).fold(0, |all, k| all | passes[k] << k)
+    }
+
+    /// The world's parameter `t` of a lane here, as [`TreeRay::end_above`] but without a branch.
+    #[inline(always)]
+    fn end_above(&self, k: usize, t: f64) -> f32 {
+        limit_above(t * self.rate[k] - self.arrival[k] + self.slack[k])
     }
 
     /// The ray of a lane in the tree's frame.
@@ -117,7 +172,8 @@ impl Packet {
     fn ray(&self, k: usize) -> TreeRay {
         let lane = |columns: &[Singles; 3]| columns.each_ref().map(|column| column[k]);
         let (origin, dir) = (lane(&self.origin), lane(&self.dir));
-        TreeRay { origin, dir, rate: self.rate[k], arrival: 0.0, slack: 0.0 }
+        let (rate, arrival, slack) = (self.rate[k], self.arrival[k], self.slack[k]);
+        TreeRay { origin, dir, rate, arrival, slack }
     }
 
     /// Which of the rays may meet the box of `node` in `slot`; the same arithmetic as a single ray's.
@@ -222,11 +278,17 @@ fn has_lanes() -> bool {
 fn load<S: Simd>(simd: S, column: &Singles, start: usize) -> S::F {
     match column[start..].first_chunk() {
         Some(group) => simd.load(group),
-        None => simd.splat(-1.0),
+        None => simd.splat(ASIDE),
     }
 }
 
-/// A limit not below `x`, without a branch.
+/// The lanes in which a number is not above `limit`.
+#[inline(always)]
+fn within(column: &Column, limit: f64) -> u64 {
+    (0..LANES).fold(0, |all, k| all | u64::from(column[k] <= limit) << k)
+}
+
+/// A limit not below `x`, or negative like it, without a branch.
 #[inline(always)]
 fn limit_above(x: f64) -> f32 {
     (x as f32) * (1.0 + 2.0 * f32::EPSILON) + f32::MIN_POSITIVE
@@ -252,15 +314,19 @@ impl Kernel for NearestPacket<'_> {
             return false;
         };
         *hits = HitLanes::NONE;
-        let mut rates = [0.0; LANES];
+        let (mut rates, mut starts) = ([0.0; LANES], [0.0; LANES]);
         for k in 0..LANES {
-            let along = limit_above(f64::from(packet.beam.along(packet.ray(k).dir)));
-            rates[k] = if packet.limit[k] >= 0.0 { along } else { 0.0 };
+            let (ray, searches) = (packet.ray(k), packet.limit[k] >= 0.0);
+            let along = limit_above(f64::from(packet.beam.along(ray.dir)));
+            let start = packet.beam.depth(ray.origin) + START_SLACK;
+            rates[k] = if searches { along } else { 0.0 };
+            starts[k] = if searches { start } else { f32::NEG_INFINITY };
         }
         let crossed = [[f64::NAN; LANES]; 2];
         let pending = [u32::MAX; LANES];
         let from = [f32::INFINITY; LANES];
-        let mut nearest = Nearest { accel, tree, rays, hits, rates, crossed, pending, from };
+        let mut nearest =
+            Nearest { accel, tree, rays, hits, rates, starts, crossed, pending, from };
         for place in accel.outside() {
             nearest.test(simd, &mut packet, place, rays.used);
         }
@@ -277,6 +343,8 @@ struct Nearest<'a> {
     hits: &'a mut HitLanes,
     /// How far each ray goes along the beam's axis in one unit of its parameter, rounded up.
     rates: Singles,
+    /// How far along the axis each ray starts, rounded up.
+    starts: Singles,
     /// Where the lanes cross the primitive that is tried.
     crossed: [Column; 2],
     /// A certain hit of each lane, that has not been decided in double precision because it may never matter: its place, and what its
@@ -312,7 +380,7 @@ impl Nearest<'_> {
             hits.t[k] = if is_better { t } else { hits.t[k] };
             hits.primitive[k] = if is_better { number } else { hits.primitive[k] };
             hits.face[k] = if is_better { 0 } else { hits.face[k] };
-            let limit = limit_above(hits.t[k] * packet.rate[k]);
+            let limit = packet.end_above(k, hits.t[k]);
             packet.limit[k] = if limit < packet.limit[k] { limit } else { packet.limit[k] };
         }
     }
@@ -323,7 +391,7 @@ impl Nearest<'_> {
         let (t, hits) = (crossing.t, &mut *self.hits);
         if t > 0.0 && (t < hits.t[k] || t == hits.t[k] && number < hits.primitive[k]) {
             (hits.t[k], hits.primitive[k], hits.face[k]) = (t, number, crossing.face);
-            packet.limit[k] = packet.limit[k].min(limit_above(t * packet.rate[k]));
+            packet.limit[k] = packet.limit[k].min(packet.end_above(k, t));
         }
     }
 
@@ -404,10 +472,10 @@ impl<S: Simd> Searches<S> for Nearest<'_> {
     fn end(&self, packet: &Packet) -> f32 {
         // In eight parts, each a lane of vectors.
         let mut ends = [f32::NEG_INFINITY; GROUP];
-        for (limits, rates) in packet.limit.chunks_exact(GROUP).zip(self.rates.chunks_exact(GROUP))
-        {
-            for ((end, limit), rate) in ends.iter_mut().zip(limits).zip(rates) {
-                let other = limit_above(f64::from(limit * rate));
+        for start in (0..LANES).step_by(GROUP) {
+            for (part, end) in ends.iter_mut().enumerate() {
+                let k = start + part;
+                let other = packet.limit[k] * self.rates[k] + self.starts[k];
                 *end = if other > *end { other } else { *end };
             }
         }
@@ -442,14 +510,14 @@ where
         for k in lanes(rays.used) {
             end = end.max(-packet.beam.along_axis(tree.frame.vector(rays.dir.get(k))));
         }
-        let end = above(end * (1.0 + 1e-6)).next_up();
+        let end = above(end * (1.0 + 1e-12) - packet.beam.lead).next_up() + START_SLACK;
         let crossed = [[f64::NAN; LANES]; 2];
         let mut blocks = Blocks { accel, tree, rays, opaque, visit, crossed, end };
         for place in accel.outside() {
             blocks.test(simd, &mut packet, place, rays.used);
         }
         packet.walk(simd, tree, &mut blocks);
-        let blocked = |k: usize| u64::from(packet.limit[k] < 0.0) << k;
+        let blocked = |k: usize| u64::from(packet.limit[k] == BLOCKED) << k;
         Some(rays.used & (0..LANES).fold(0, |all, k| all | blocked(k)))
     }
 }
@@ -502,7 +570,7 @@ where
             for k in range.clone() {
                 let is_blocked = is_between(first[k]) | is_between(second[k]);
                 let keeps = own >> k & 1 != 0;
-                packet.limit[k] = if is_blocked & !keeps { -1.0 } else { packet.limit[k] };
+                packet.limit[k] = if is_blocked & !keeps { BLOCKED } else { packet.limit[k] };
             }
         } else {
             let mut crossed = [0_u64; LANES];
@@ -512,7 +580,7 @@ where
             for k in lanes(others).filter(|k| crossed[*k] != 0) {
                 for t in [first[k], second[k]].into_iter().filter(|t| is_between(*t)) {
                     if (self.visit)(k, number, Crossing::at(t)).is_break() {
-                        packet.limit[k] = -1.0;
+                        packet.limit[k] = BLOCKED;
                         break;
                     }
                 }
@@ -530,7 +598,7 @@ where
             let (accel, opaque) = (self.accel, self.opaque);
             let mut test = crossed::Test { accel, ray: &ray, end: 1.0, opaque, visit };
             if test.test(simd, place) {
-                packet.limit[k] = -1.0;
+                packet.limit[k] = BLOCKED;
             }
         }
     }
@@ -553,7 +621,7 @@ where
             let place = (first + lane) as usize;
             let number = self.accel.numbers[place];
             if certain & 1 << lane != 0 && number != left && (self.opaque)(number) {
-                packet.limit[k] = -1.0;
+                packet.limit[k] = BLOCKED;
             } else {
                 self.test_each(simd, packet, place, 1 << k);
             }
