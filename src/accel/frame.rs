@@ -196,6 +196,13 @@ impl TreeRay {
         Self { origin, dir, rate, arrival, slack }
     }
 
+    /// The ray with these, which arrives at `late` plus [`slack`](Self::slack), or starts here if that is 0.
+    #[inline(always)]
+    pub(super) fn again(origin: [f32; 3], dir: [f32; 3], rate: f64, late: f64) -> Self {
+        let slack = if late == 0.0 { 0.0 } else { ARRIVAL_SLACK };
+        Self { origin, dir, rate, arrival: late + slack, slack }
+    }
+
     /// The world's parameter `t` here, rounded up and with room for the error of the arrival.
     #[inline(always)]
     pub(super) fn end_above(&self, t: f64) -> f32 {
