@@ -142,7 +142,7 @@ impl Frame {
 
     /// The ray from afar in this frame, and whether it arrives; without a branch.
     #[inline(always)]
-    pub(super) fn from_afar(&self, origin: DVec3, dir: DVec3) -> (TreeRay, bool) {
+    pub(super) fn brought(&self, origin: DVec3, dir: DVec3) -> (TreeRay, bool) {
         let (dir, rate, _) = self.shrunk(dir);
         let (point, t, arrives) = arrival(self.point(origin), dir);
         (TreeRay::new(point, dir, rate, t, ARRIVAL_SLACK), arrives)

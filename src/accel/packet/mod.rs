@@ -144,7 +144,7 @@ impl Packet {
         let mut passes = [0_u64; LANES];
         for k in 0..LANES {
             let is_far = far >> k & 1 != 0;
-            let (ray, arrives) = tree.frame.from_afar(rays.origin.get(k), rays.dir.get(k));
+            let (ray, arrives) = tree.frame.brought(rays.origin.get(k), rays.dir.get(k));
             for axis in 0..3 {
                 let x = self.origin[axis][k];
                 self.origin[axis][k] = if is_far { ray.origin[axis] } else { x };
