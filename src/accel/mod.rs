@@ -117,7 +117,7 @@ impl Accel {
             bounds,
             isa: Isa::Portable,
             #[cfg(test)]
-            ran: Default::default(),
+            ran: tests::pictures::Ran::default(),
         };
         accel.set_isa(isa);
         accel

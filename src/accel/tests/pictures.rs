@@ -32,6 +32,9 @@ impl<K: Kernel> Kernel for Noted<'_, K> {
     }
 }
 
+/// Makes a scene.
+type Make = Box<dyn Fn() -> Scene>;
+
 /// How often each of [`Isa::ALL`] ran.
 fn counts(ran: &Ran) -> [u64; Isa::ALL.len()] {
     ran.0.each_ref().map(|count| count.load(Relaxed))
@@ -49,7 +52,7 @@ fn bits(rendering: &Rendering) -> (Vec<[u32; 3]>, Vec<u32>) {
 fn pictures_are_the_same_by_all_instructions() {
     let model = concat!(env!("CARGO_MANIFEST_DIR"), "/models/crate/crate.obj");
     let open = || load(model, &LoadOptions::default()).expect("a model").scene;
-    let scenes: [(&str, Box<dyn Fn() -> Scene>); 3] = [
+    let scenes: [(&str, Make); 3] = [
         ("assignment", Box::new(|| load_builtin("assignment").expect("a scene"))),
         ("spheres", Box::new(|| load_builtin_of("spheres", Some(200)).expect("a scene"))),
         ("a mesh", Box::new(open)),
