@@ -151,17 +151,18 @@ impl Effort {
 }
 
 /// The tree that obvhs builds over `boxes`, of a scene of `meshes` or not.
-pub(super) fn binary(boxes: &[Aabb], meshes: bool) -> Binary {
+pub(super) fn binary(boxes: Vec<Aabb>, meshes: bool) -> Binary {
     let Effort { reach, first_passes, reinsertion } = Effort::for_boxes(boxes.len(), meshes);
     let precision = if boxes.len() <= 2_000 { SortPrecision::U128 } else { SortPrecision::U64 };
     let indices = (0..boxes.len() as u32).collect();
     let mut bvh = PlocBuilder::with_capacity(boxes.len()).build(
         reach,
-        boxes,
+        &boxes,
         indices,
         precision,
         first_passes,
     );
+    drop(boxes);
     let mut optimizer = ReinsertionOptimizer::default();
     for share in reinsertion {
         optimizer.run(&mut bvh, *share, None);

@@ -64,17 +64,17 @@ impl Run {
 }
 
 /// Plans and builds the wide tree; `kinds` are those of the primitives.
-pub(super) fn collapse(binary: &Binary, kinds: &[Kind]) -> Wide {
-    let plans = Plans::of(binary, kinds);
+pub(super) fn collapse(binary: Binary, kinds: &[Kind]) -> Wide {
+    let plans = Plans::of(&binary, kinds);
     Collapse { binary, plans }.build()
 }
 
-struct Collapse<'a> {
-    binary: &'a Binary,
+struct Collapse {
+    binary: Binary,
     plans: Plans,
 }
 
-impl Collapse<'_> {
+impl Collapse {
     fn build(&self) -> Wide {
         let mut wide = Wide {
             nodes: Vec::new(),

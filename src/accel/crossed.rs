@@ -97,8 +97,9 @@ where
         self.crosses(number, first) || self.crosses(number, second)
     }
 
+    /// Whether a crossing with primitive `number` stops the ray.
     #[inline(always)]
-    fn crosses(&mut self, number: u32, crossing: Crossing) -> bool {
+    pub(super) fn crosses(&mut self, number: u32, crossing: Crossing) -> bool {
         crossing.t > 0.0
             && crossing.t < self.end
             && ((self.opaque)(number) || self.visit.visit(number, crossing).is_break())

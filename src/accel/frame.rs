@@ -22,9 +22,12 @@ const BALL_RADIUS: f64 = 1.75;
 /// How much later than computed an end may be, in the parameter of the tree's frame, for a ray that walked here.
 const ARRIVAL_SLACK: f64 = 1.0 / (1 << 20) as f64;
 
+/// Beyond this distance (in the tree's frame, squared) a ray walks to the ball first.
+pub(super) const NEAR_SQUARED: f64 = 4.0;
+
 /// Beyond this distance (in the tree's frame, squared) the rounding of "origin − centre" in double precision, which
 /// every primitive does for itself, is no longer small against the pads.
-const FAR_SQUARED: f64 = ((1_u64 << 28) * (1_u64 << 28)) as f64;
+pub(super) const FAR_SQUARED: f64 = ((1_u64 << 28) * (1_u64 << 28)) as f64;
 
 /// The change from world coordinates to those of the tree.
 #[derive(Clone, Copy, Debug)]
@@ -117,7 +120,7 @@ impl Frame {
         let mut origin = self.point(ray.origin);
         let distance_squared = origin.length_squared();
         let (mut arrival, mut slack) = (0.0, 0.0);
-        if !(distance_squared <= 4.0) {
+        if !(distance_squared <= NEAR_SQUARED) {
             if !(distance_squared <= FAR_SQUARED) {
                 return Entry::Extreme;
             }
@@ -127,13 +130,22 @@ impl Frame {
         Entry::Ray(TreeRay::new(origin, dir, rate, arrival, slack))
     }
 
-    /// The ray in this frame if it need not walk here first, and whether that is so; without a branch, for loops over lanes.
+    /// The ray in this frame, without a branch, for loops over lanes: if it need not walk here first, and otherwise only as far as
+    /// its direction; and the square of its start's distance from the centre, NaN if the direction is [extreme](Entry::Extreme).
     #[inline(always)]
-    pub(super) fn near(&self, origin: DVec3, dir: DVec3) -> (TreeRay, bool) {
+    pub(super) fn beside(&self, origin: DVec3, dir: DVec3) -> (TreeRay, f64) {
         let (dir, rate, fits) = self.shrunk(dir);
         let origin = self.point(origin);
-        let is_near = origin.length_squared() <= 4.0;
-        (TreeRay::new(origin, dir, rate, 0.0, 0.0), fits & is_near)
+        let distance_squared = if fits { origin.length_squared() } else { f64::NAN };
+        (TreeRay::new(origin, dir, rate, 0.0, 0.0), distance_squared)
+    }
+
+    /// The ray from afar in this frame, and whether it arrives; without a branch.
+    #[inline(always)]
+    pub(super) fn brought(&self, origin: DVec3, dir: DVec3) -> (TreeRay, bool) {
+        let (dir, rate, _) = self.shrunk(dir);
+        let (point, t, arrives) = arrival(self.point(origin), dir);
+        (TreeRay::new(point, dir, rate, t, ARRIVAL_SLACK), arrives)
     }
 
     /// The direction scaled so that its largest component is in [1, 2], the rate of the parameters, and whether both are
@@ -161,15 +173,19 @@ impl Frame {
 /// "Precision Improvements for Ray/Sphere Intersection", *Ray Tracing Gems* (2019), ch. 7.
 #[inline(always)]
 fn arrive(origin: DVec3, dir: DVec3) -> Option<(DVec3, f64)> {
+    let (point, t, arrives) = arrival(origin, dir);
+    arrives.then_some((point, t))
+}
+
+/// As [`arrive`], without a branch; point and parameter mean nothing if the third is false.
+#[inline(always)]
+fn arrival(origin: DVec3, dir: DVec3) -> (DVec3, f64, bool) {
     let a = dir.length_squared();
     let foot = cross(dir, cross(origin, dir)) / a;
     let chord = BALL_RADIUS * BALL_RADIUS - foot.length_squared();
     let b = origin.dot(dir);
-    if !(chord >= 0.0 && b < 0.0) {
-        return None;
-    }
     let half = (chord / a).sqrt();
-    Some((foot - dir * half, -b / a - half))
+    (foot - dir * half, -b / a - half, (chord >= 0.0) & (b < 0.0))
 }
 
 impl TreeRay {
@@ -178,6 +194,13 @@ impl TreeRay {
         let origin = [origin.x as f32, origin.y as f32, origin.z as f32];
         let dir = [dir.x as f32, dir.y as f32, dir.z as f32];
         Self { origin, dir, rate, arrival, slack }
+    }
+
+    /// The ray with these, which arrives at `late` plus [`slack`](Self::slack), or starts here if that is 0.
+    #[inline(always)]
+    pub(super) fn again(origin: [f32; 3], dir: [f32; 3], rate: f64, late: f64) -> Self {
+        let slack = if late == 0.0 { 0.0 } else { ARRIVAL_SLACK };
+        Self { origin, dir, rate, arrival: late + slack, slack }
     }
 
     /// The world's parameter `t` here, rounded up and with room for the error of the arrival.

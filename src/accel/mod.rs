@@ -77,6 +77,9 @@ pub struct Accel {
     inside: usize,
     bounds: Bounds,
     isa: Isa,
+    /// How often a query ran, by instructions.
+    #[cfg(test)]
+    ran: tests::pictures::Ran,
     /// The shapes as the textbook has them, in their places.
     #[cfg(feature = "leaf-study")]
     naive: Vec<study::NaiveShape>,
@@ -103,8 +106,7 @@ impl Accel {
             places[*number as usize] = place;
         }
         let shapes = in_order(shapes, &numbers);
-        let isa = if isa.is_available() { isa } else { Isa::Portable };
-        Self {
+        let mut accel = Self {
             tree,
             #[cfg(feature = "leaf-study")]
             naive: shapes.iter().map(study::NaiveShape::new).collect(),
@@ -113,8 +115,30 @@ impl Accel {
             places,
             inside,
             bounds,
-            isa,
-        }
+            isa: Isa::Portable,
+            #[cfg(test)]
+            ran: tests::pictures::Ran::default(),
+        };
+        accel.set_isa(isa);
+        accel
+    }
+
+    /// Has queries use the instructions of `isa`, or the portable ones where the machine lacks them.
+    pub fn set_isa(&mut self, isa: Isa) {
+        self.isa = if isa.is_available() { isa } else { Isa::Portable };
+    }
+
+    /// Runs `kernel` with the instructions that queries use.
+    #[cfg(not(test))]
+    #[inline(always)]
+    fn dispatch<K: Kernel>(&self, kernel: K) -> K::Output {
+        dispatch(self.isa, kernel)
+    }
+
+    /// Runs `kernel` likewise, and notes by which instructions it really runs.
+    #[cfg(test)]
+    fn dispatch<K: Kernel>(&self, kernel: K) -> K::Output {
+        dispatch(self.isa, tests::pictures::Noted { kernel, ran: &self.ran })
     }
 
     /// The number of primitives.
@@ -134,9 +158,9 @@ impl Accel {
 
     /// The memory of tree and primitives, in bytes.
     pub fn bytes(&self) -> usize {
-        let nodes = self.tree.as_ref().map_or(0, |tree| size_of_val(tree.nodes.as_slice()));
+        let tree = self.tree.as_ref().map_or(0, Tree::bytes);
         let numbers = size_of_val(self.numbers.as_slice()) + size_of_val(self.places.as_slice());
-        nodes + numbers + size_of_val(self.shapes.as_slice())
+        tree + numbers + size_of_val(self.shapes.as_slice())
     }
 
     /// The primitive with this number.
@@ -157,17 +181,17 @@ impl Accel {
     /// Runs `work` compiled for the instructions that queries use, so that its fused multiply-adds are instructions too.
     #[inline(always)]
     pub(crate) fn run<W: Work>(&self, work: W) {
-        dispatch(self.isa, Run(work));
+        self.dispatch(Run(work));
     }
 
     /// The nearest hit with `0 < t < end`; of equal ones, that of the lowest primitive.
     pub fn nearest(&self, ray: &Ray, end: f64) -> Option<Hit> {
-        dispatch(self.isa, Nearest { accel: self, ray, end })
+        self.dispatch(Nearest { accel: self, ray, end })
     }
 
     /// The nearest hits of rays that start in one point of free space, as [`Accel::nearest`] without an end finds them.
     pub fn nearest_packet(&self, rays: &RayLanes, hits: &mut HitLanes) {
-        if dispatch(self.isa, NearestPacket { accel: self, rays, hits }) {
+        if self.dispatch(NearestPacket { accel: self, rays, hits }) {
             return;
         }
         *hits = HitLanes::NONE;
@@ -189,7 +213,7 @@ impl Accel {
     ) -> u64 {
         let (opaque, visit) = (&opaque, &mut visit);
         if let Some(blocked) =
-            dispatch(self.isa, BlockedPacket { accel: self, rays, target, opaque, visit })
+            self.dispatch(BlockedPacket { accel: self, rays, target, opaque, visit })
         {
             return blocked;
         }
@@ -221,7 +245,7 @@ impl Accel {
         opaque: impl Fn(u32) -> bool,
         visit: impl FnMut(u32, Crossing) -> ControlFlow<()>,
     ) -> bool {
-        dispatch(self.isa, Crossed { accel: self, ray, end, opaque, visit })
+        self.dispatch(Crossed { accel: self, ray, end, opaque, visit })
     }
 
     /// The crossings of `ray` with the primitive in `place`.

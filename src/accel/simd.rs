@@ -87,6 +87,10 @@ pub(super) trait Simd: Copy {
     /// Eight numbers.
     type F: Copy;
 
+    /// Which it is.
+    #[cfg(test)]
+    const ISA: Isa;
+
     /// Runs a kernel compiled for these instructions.
     fn vectorize<K: Kernel>(self, kernel: K) -> K::Output;
 
@@ -107,6 +111,15 @@ pub(super) trait Simd: Copy {
 
     /// [`triangle::certain_crossing`], likewise.
     fn certain_crossing(self, corners: &[DVec3; 3], ray: &Ray) -> Crossing;
+
+    /// [`triangle::cross_lanes`], likewise.
+    fn triangle_lanes(
+        self,
+        corners: &[DVec3; 3],
+        rays: &RayLanes,
+        lanes: Range<usize>,
+        crossed: &mut [Column; 2],
+    );
 
     /// Asks for the memory of `x`, which is needed soon.
     fn prefetch<T>(self, x: &T);
@@ -149,6 +162,9 @@ impl Portable {
 impl Simd for Portable {
     type F = Lanes;
 
+    #[cfg(test)]
+    const ISA: Isa = Isa::Portable;
+
     #[inline(always)]
     fn vectorize<K: Kernel>(self, kernel: K) -> K::Output {
         kernel.run(self)
@@ -179,6 +195,26 @@ impl Simd for Portable {
             triangle::certain_crossing(corners, ray)
         }
         compiled(corners, ray)
+    }
+
+    #[inline(always)]
+    fn triangle_lanes(
+        self,
+        corners: &[DVec3; 3],
+        rays: &RayLanes,
+        lanes: Range<usize>,
+        crossed: &mut [Column; 2],
+    ) {
+        #[inline(never)]
+        fn compiled(
+            corners: &[DVec3; 3],
+            rays: &RayLanes,
+            lanes: Range<usize>,
+            crossed: &mut [Column; 2],
+        ) {
+            triangle::cross_lanes(corners, rays, lanes, crossed);
+        }
+        compiled(corners, rays, lanes, crossed);
     }
 
     #[inline(always)]

@@ -23,6 +23,8 @@ use crate::geometry::{
     triangle,
 };
 
+#[cfg(test)]
+use super::simd::Isa;
 use super::simd::{Kernel, Lanes, Simd};
 
 /// A method that is one intrinsic.
@@ -55,6 +57,9 @@ macro_rules! instructions {
 
         impl Simd for $name {
             type F = __m256;
+
+            #[cfg(test)]
+            const ISA: Isa = Isa::$name;
 
             #[inline(always)]
             fn vectorize<K: Kernel>(self, kernel: K) -> K::Output {
@@ -119,6 +124,28 @@ macro_rules! instructions {
                 }
                 // SAFETY: `self` proves that the machine has these features.
                 unsafe { compiled(corners, ray) }
+            }
+
+            #[inline(always)]
+            fn triangle_lanes(
+                self,
+                corners: &[DVec3; 3],
+                rays: &RayLanes,
+                lanes: Range<usize>,
+                crossed: &mut [Column; 2],
+            ) {
+                #[target_feature(enable = $features)]
+                #[inline(never)]
+                fn compiled(
+                    corners: &[DVec3; 3],
+                    rays: &RayLanes,
+                    lanes: Range<usize>,
+                    crossed: &mut [Column; 2],
+                ) {
+                    triangle::cross_lanes(corners, rays, lanes, crossed);
+                }
+                // SAFETY: `self` proves that the machine has these features.
+                unsafe { compiled(corners, rays, lanes, crossed) };
             }
 
             #[inline(always)]

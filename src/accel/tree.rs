@@ -32,14 +32,13 @@ impl Tree {
     /// Builds the tree over `inside`; also returns its primitives in the order of the leaves.
     pub(super) fn build(shapes: &[Shape], division: &Division) -> Option<(Self, Vec<u32>)> {
         let (frame, inside) = (division.frame?, &division.inside);
-        let boxes = build::boxes(shapes, inside, &frame);
+        let boxes = || build::boxes(shapes, inside, &frame);
         let kinds: Vec<Kind> = inside.par_iter().map(|k| Kind::of(&shapes[*k as usize])).collect();
         let meshes = kinds.iter().take(64).any(|kind| *kind == Kind::Triangle);
-        let mut wide = collapse(&build::binary(&boxes, meshes), &kinds);
+        let mut wide = collapse(build::binary(boxes(), meshes), &kinds);
         if wide.depth > MAX_DEPTH {
-            wide = collapse(&build::balanced(&boxes), &kinds);
+            wide = collapse(build::balanced(&boxes()), &kinds);
         }
-        drop(boxes);
         let order: Vec<u32> = wide.order.iter().map(|k| inside[*k as usize]).collect();
         let leaves = Leaves { shapes, order: &order, frame: &frame };
         let corners = leaves.corners(&wide.triangle_runs);
@@ -54,6 +53,12 @@ impl Tree {
             corners,
         };
         Some((tree, order))
+    }
+
+    /// The memory of nodes and leaves, in bytes.
+    pub(super) fn bytes(&self) -> usize {
+        let leaves = size_of_val(self.spheres.as_slice()) + size_of_val(self.triangles.as_slice());
+        size_of_val(self.nodes.as_slice()) + leaves + size_of_val(self.corners.as_slice())
     }
 
     /// The places of a leaf's primitives.

@@ -91,6 +91,12 @@ impl RayLanes<'_> {
         Ray { origin: self.origin.get(lane), dir: self.dir.get(lane), from }
     }
 
+    /// The ray of a lane as if it left no surface.
+    #[inline(always)]
+    pub fn plain_ray(&self, lane: usize) -> Ray {
+        Ray { origin: self.origin.get(lane), dir: self.dir.get(lane), from: None }
+    }
+
     /// The lanes whose rays leave `primitive`, a bit for each.
     #[inline(always)]
     pub fn leaving(&self, primitive: u32) -> u64 {

@@ -10,6 +10,7 @@ use super::{
     hit::{Crossing, Crossings, Hit, NO_CROSSINGS, Surface, first_ahead},
     lanes::{Column, LANES, RayLanes, SurfaceLanes, hull, lanes},
     ray::{Departure, Ray},
+    triangle,
 };
 use crate::math::scale;
 
@@ -191,10 +192,11 @@ impl Shape {
         &self,
         rays: &RayLanes,
         lanes: Range<usize>,
-        [first, second]: &mut [Column; 2],
+        crossed: &mut [Column; 2],
     ) -> bool {
         let lanes = lanes.start.min(LANES)..lanes.end.min(LANES);
         let (origin, dir) = (rays.origin, rays.dir);
+        let [first, second] = crossed;
         match self {
             Self::Sphere(s) => {
                 for k in lanes {
@@ -207,12 +209,8 @@ impl Shape {
                     (first[k], second[k]) = (shape.parameter(origin.get(k), dir.get(k)), f64::NAN);
                 }
             }
-            Self::Triangle(s) => {
-                let shape = **s;
-                for k in lanes {
-                    (first[k], second[k]) = (shape.parameter(origin.get(k), dir.get(k)), f64::NAN);
-                }
-            }
+            Self::Triangle(s) => triangle::cross_lanes(&s.vertices(), rays, lanes, crossed),
+            Self::Face(s) => triangle::cross_lanes(&s.vertices(), rays, lanes, crossed),
             _ => return false,
         }
         true

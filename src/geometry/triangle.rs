@@ -1,10 +1,13 @@
 //! The triangle; its front is where its corners run counterclockwise.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::{
     Bounds, Similarity, flat,
     hit::{Crossing, Crossings, Surface},
+    lanes::{Column, LANES, RayLanes},
     ray::Ray,
     shape::ShapeError,
 };
@@ -45,12 +48,6 @@ impl Triangle {
         [crossing(&self.vertices, ray), Crossing::NONE]
     }
 
-    /// The parameter of the crossing, or NaN.
-    #[inline(always)]
-    pub(super) fn parameter(&self, origin: DVec3, dir: DVec3) -> f64 {
-        flat::crossing_parameter(&self.vertices, doubled_area(&self.vertices), origin, dir)
-    }
-
     #[inline(always)]
     pub(crate) fn surface(&self, ray: &Ray, t: f64, rest: DVec3) -> Surface {
         flat::surface(self.plane(), ray.origin, ray.dir, t, rest)
@@ -73,6 +70,22 @@ pub(crate) fn crossing(corners: &[DVec3; 3], ray: &Ray) -> Crossing {
 #[inline(always)]
 pub(crate) fn certain_crossing(corners: &[DVec3; 3], ray: &Ray) -> Crossing {
     flat::plane_crossing(corners[0], doubled_area(corners), ray)
+}
+
+/// The same for some `lanes` of rays: the parameters, or NaN, and no second ones.
+#[inline(always)]
+pub(crate) fn cross_lanes(
+    corners: &[DVec3; 3],
+    rays: &RayLanes,
+    lanes: Range<usize>,
+    [first, second]: &mut [Column; 2],
+) {
+    let (corners, area) = (*corners, doubled_area(corners));
+    for k in lanes.start.min(LANES)..lanes.end.min(LANES) {
+        let (origin, dir) = (rays.origin.get(k), rays.dir.get(k));
+        first[k] = flat::crossing_parameter(&corners, area, origin, dir);
+        second[k] = f64::NAN;
+    }
 }
 
 /// The cross product of two edges, scaled so that it is zero only if the corners lie on one line.

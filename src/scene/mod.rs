@@ -36,7 +36,7 @@ pub use self::{
 };
 use crate::{
     aa::AntiAliasing,
-    accel::Accel,
+    accel::{Accel, Isa},
     camera::Camera,
     color::Rgb,
     geometry::{Hit, Ray, Shape, Similarity, Surface},
@@ -102,7 +102,8 @@ impl Scene {
         let on_meshes = parts.meshes.iter().flat_map(|part| part.mesh.vertices());
         let map = Similarity::normalizing(&bounds, points.into_iter().chain(on_meshes.copied()));
         let Parts { resolution, depth, shapes, mut material_of, materials, lights, .. } = parts;
-        let mut shapes: Vec<Shape> = shapes.iter().map(|shape| shape.mapped(&map)).collect();
+        // In place: there may be gigabytes of them.
+        let mut shapes: Vec<Shape> = shapes.into_iter().map(|shape| shape.mapped(&map)).collect();
         for MeshPart { mesh, material_of: of_faces } in parts.meshes {
             let mesh = Arc::new(mesh.mapped(&map));
             shapes.extend(mesh.faces().map(Shape::from));
@@ -148,6 +149,13 @@ impl Scene {
     /// How pixels are sampled, if the scene says it and the user does not.
     pub fn aa(&self) -> Option<AntiAliasing> {
         self.aa
+    }
+
+    /// Has rays traced by the instructions of `isa`, or the portable ones where the machine lacks them; the picture is the same.
+    #[must_use]
+    pub fn with_isa(mut self, isa: Isa) -> Self {
+        self.accel.set_isa(isa);
+        self
     }
 
     /// The number of primitives.

@@ -2,6 +2,7 @@
 
 mod lanes;
 mod packets;
+pub(super) mod pictures;
 mod scenes;
 
 use std::ops::ControlFlow;
@@ -253,7 +254,7 @@ fn the_balanced_tree_finds_the_same() {
     let frame = division.frame.expect("finite");
     let boxes = super::build::boxes(&shapes, &division.inside, &frame);
     let kinds = [super::collapse::Kind::Sphere; 300];
-    let wide = super::collapse::collapse(&super::build::balanced(&boxes), &kinds);
+    let wide = super::collapse::collapse(super::build::balanced(&boxes), &kinds);
     let mut order = wide.order.clone();
     order.sort_unstable();
     assert!(order.into_iter().eq(0..300) && wide.depth <= 9, "depth {}", wide.depth);

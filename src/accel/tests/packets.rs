@@ -6,10 +6,10 @@ use glam::DVec3;
 
 use super::{
     bits, crossings,
-    scenes::{KINDS, Random, awkward, shape_of},
+    scenes::{KINDS, Random, awkward, quad, shape_of, sphere},
 };
 use crate::{
-    accel::{Accel, Isa},
+    accel::{Accel, Isa, packet::NearestPacket, simd::dispatch},
     geometry::{
         Crossing, Hit, Ray, Shape, Surface,
         lanes::{Departures, HitLanes, LANES, RayLanes, SurfaceLanes, Vectors, lanes},
@@ -152,4 +152,61 @@ fn packets_agree_with_single_rays() {
         }
     }
     assert!(hits > 5_000, "{hits} rays hit");
+}
+
+/// Oracle: the single rays. Packets from afar must be traced as such, though some of their rays pass the scene by, and so must
+/// the shadows that end there.
+#[test]
+fn packets_from_afar_agree_with_single_rays() {
+    let mut random = Random(4096);
+    let mut scenes = awkward();
+    for count in [1, 9, 1000] {
+        let mixed = (0..count).map(|k| {
+            let (center, size) = (random.point(), 0.5 / f64::from(count).cbrt());
+            shape_of(k as usize % KINDS, center, size, &mut random)
+        });
+        scenes.push(("mixed", mixed.collect::<Vec<Shape>>()));
+        // A floor outside the tree, on which shadow rays start from afar.
+        let low = DVec3::splat(-1e5).with_y(-3.0);
+        let floor = quad(low, DVec3::Z * 2e5, DVec3::X * 2e5);
+        let balls = (0..count).map(|_| sphere(random.point(), 0.5 / f64::from(count).cbrt()));
+        scenes.push(("floor", balls.chain([floor]).collect()));
+    }
+    let (mut hits, mut whole, mut asked) = (0, 0, 0);
+    for (name, shapes) in &scenes {
+        for isa in Isa::ALL.into_iter().filter(|isa| isa.is_available()) {
+            let accel = Accel::with_isa(shapes.clone(), isa);
+            let (center, size) = (accel.bounds().center(), accel.bounds().size());
+            let size = if *name == "floor" { 2.0 } else { size };
+            for distance in [1.1, 3.0, 30.0, 1e4, 1e9] {
+                // The widest passes by on all sides.
+                for width in [1e-3, 0.03, 0.1, 2.0] {
+                    for axis in [random.direction(), DVec3::NEG_Z, DVec3::new(1.0, 1e-3, 0.0)] {
+                        let center = if *name == "floor" { DVec3::ZERO } else { center };
+                        let goal = center + random.point() * (size / 4.0);
+                        let origin = goal - axis * (distance * size);
+                        let rays = beam(&mut random, origin, axis, width / distance, 64);
+                        hits += check(name, &accel, &rays);
+                        if accel.tree.is_some() && width < 0.1 && distance < 1e5 {
+                            asked += 1;
+                            whole += usize::from(is_traced_whole(&accel, &rays));
+                        }
+                    }
+                }
+            }
+        }
+    }
+    assert!(hits > 20_000, "{hits} rays hit");
+    assert!(whole * 10 > asked * 9, "{whole} of {asked} packets were traced as packets");
+}
+
+/// Whether the rays are traced together rather than one by one.
+fn is_traced_whole(accel: &Accel, all: &[Ray]) -> bool {
+    let (mut origin, mut dir, mut hits) = (Vectors::ZERO, Vectors::ZERO, HitLanes::NONE);
+    for (k, ray) in all.iter().enumerate() {
+        origin.set(k, ray.origin);
+        dir.set(k, ray.dir);
+    }
+    let rays = &RayLanes { origin: &origin, dir: &dir, from: None, used: u64::MAX };
+    dispatch(accel.isa, NearestPacket { accel, rays, hits: &mut hits })
 }

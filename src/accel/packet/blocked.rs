@@ -1,0 +1,224 @@
+//! What blocks the rays of a packet on their way to a light.
+
+use std::ops::ControlFlow;
+
+use glam::DVec3;
+
+use super::{BLOCKED, FEWEST_LANES, Packet, START_SLACK, Searches, has_lanes};
+use crate::{
+    accel::{
+        Accel, crossed,
+        frame::above,
+        leaf::{Candidates, LeafRay},
+        node::Content,
+        simd::{Kernel, Simd},
+        target::{Target, triangle_crossing},
+        tree::Tree,
+    },
+    geometry::{
+        Crossing, Ray,
+        lanes::{Column, LANES, RayLanes, hull, lanes},
+    },
+};
+
+/// The search for what blocks rays that end, at `t = 1`, in one point.
+pub(in crate::accel) struct BlockedPacket<'a, B, V> {
+    pub(in crate::accel) accel: &'a Accel,
+    pub(in crate::accel) rays: &'a RayLanes<'a>,
+    pub(in crate::accel) target: DVec3,
+    pub(in crate::accel) opaque: &'a B,
+    pub(in crate::accel) visit: &'a mut V,
+}
+
+impl<B, V> Kernel for BlockedPacket<'_, B, V>
+where
+    B: Fn(u32) -> bool,
+    V: FnMut(usize, u32, Crossing) -> ControlFlow<()>,
+{
+    /// The lanes that are blocked; `None` if the rays were not traced and each must be by itself.
+    type Output = Option<u64>;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Option<u64> {
+        let Self { accel, rays, target, opaque, visit } = self;
+        let tree = accel.tree.as_ref()?;
+        let mut packet = Packet::new(tree, rays, target, -1.0, 1.0)?;
+        // Seen from the light, the furthest start of a ray, rounded up with room for the error of either end.
+        let mut end = 0.0_f64;
+        for k in lanes(rays.used) {
+            end = end.max(-packet.beam.along_axis(tree.frame.vector(rays.dir.get(k))));
+        }
+        let end = above(end * (1.0 + 1e-12) - packet.beam.lead).next_up() + START_SLACK;
+        let crossed = [[f64::NAN; LANES]; 2];
+        let mut blocks = Blocks { accel, tree, rays, opaque, visit, crossed, end };
+        for place in accel.outside() {
+            blocks.test(simd, &mut packet, place, rays.used);
+        }
+        packet.walk(simd, tree, &mut blocks);
+        let blocked = |k: usize| u64::from(packet.limit[k] == BLOCKED) << k;
+        Some(rays.used & (0..LANES).fold(0, |all, k| all | blocked(k)))
+    }
+}
+
+struct Blocks<'a, B, V> {
+    accel: &'a Accel,
+    tree: &'a Tree,
+    rays: &'a RayLanes<'a>,
+    opaque: &'a B,
+    visit: &'a mut V,
+    /// Where the lanes cross the primitive that is tried.
+    crossed: [Column; 2],
+    end: f32,
+}
+
+/// A visit that knows its lane.
+pub(in crate::accel) struct VisitOf<'v, V> {
+    visit: &'v mut V,
+    lane: usize,
+}
+
+impl<V: FnMut(usize, u32, Crossing) -> ControlFlow<()>> crossed::Visit for VisitOf<'_, V> {
+    #[inline(always)]
+    fn visit(&mut self, primitive: u32, crossing: Crossing) -> ControlFlow<()> {
+        (self.visit)(self.lane, primitive, crossing)
+    }
+}
+
+impl<B, V> Blocks<'_, B, V>
+where
+    B: Fn(u32) -> bool,
+    V: FnMut(usize, u32, Crossing) -> ControlFlow<()>,
+{
+    /// Tries the primitive in `place` with the rays of the lanes `met`.
+    #[inline(always)]
+    fn test<S: Simd>(&mut self, simd: S, packet: &mut Packet, place: usize, met: u64) {
+        let (number, shape) = (self.accel.numbers[place], &self.accel.shapes[place]);
+        let own = self.rays.leaving(number);
+        let (range, others) = (hull(met & !own), met & !own);
+        if others.count_ones() < FEWEST_LANES
+            || !has_lanes()
+            || !simd.cross_lanes(shape, self.rays, range.clone(), &mut self.crossed)
+        {
+            self.test_each(simd, packet, place, met);
+            return;
+        }
+        let [first, second] = &self.crossed;
+        let is_between = |t: f64| (t > 0.0) & (t < 1.0);
+        if (self.opaque)(number) {
+            for k in range.clone() {
+                let is_blocked = is_between(first[k]) | is_between(second[k]);
+                let keeps = own >> k & 1 != 0;
+                packet.limit[k] = if is_blocked & !keeps { BLOCKED } else { packet.limit[k] };
+            }
+        } else {
+            let mut crossed = [0_u64; LANES];
+            for k in range.clone() {
+                crossed[k] = u64::from(is_between(first[k]) | is_between(second[k]));
+            }
+            for k in lanes(others).filter(|k| crossed[*k] != 0) {
+                for t in [first[k], second[k]].into_iter().filter(|t| is_between(*t)) {
+                    if (self.visit)(k, number, Crossing::at(t)).is_break() {
+                        packet.limit[k] = BLOCKED;
+                        break;
+                    }
+                }
+            }
+        }
+        self.test_each(simd, packet, place, met & own);
+    }
+
+    /// Tries the primitive in `place` with the rays of the lanes `met` one by one.
+    #[inline(always)]
+    fn test_each<S: Simd>(&mut self, simd: S, packet: &mut Packet, place: usize, met: u64) {
+        for k in lanes(met) {
+            let ray = self.rays.ray(k);
+            if self.lane_test(&ray, k).test(simd, place) {
+                packet.limit[k] = BLOCKED;
+            }
+        }
+    }
+
+    /// The test of primitives with the ray of a lane.
+    #[inline(always)]
+    fn lane_test<'t>(
+        &'t mut self,
+        ray: &'t Ray,
+        k: usize,
+    ) -> crossed::Test<'t, &'t B, VisitOf<'t, V>> {
+        let visit = VisitOf { visit: self.visit, lane: k };
+        crossed::Test { accel: self.accel, ray, end: 1.0, opaque: self.opaque, visit }
+    }
+
+    /// Takes the candidates of a leaf for the ray of one lane: a certain hit of an opaque one blocks it without further ado.
+    #[inline(always)]
+    fn take<S: Simd>(
+        &mut self,
+        simd: S,
+        packet: &mut Packet,
+        k: usize,
+        first: Target,
+        candidates: &Candidates,
+    ) {
+        let Candidates { mut maybe, certain, .. } = *candidates;
+        let left = self.rays.from.map_or(u32::MAX, |from| from.hits.primitive[k]);
+        while maybe != 0 && packet.limit[k] >= 0.0 {
+            let lane = maybe.trailing_zeros() & 7;
+            maybe &= maybe - 1;
+            let target = first.lane(lane);
+            let number = self.accel.numbers[target.place as usize];
+            let certain = certain & 1 << lane != 0;
+            if certain && number != left && (self.opaque)(number) {
+                packet.limit[k] = BLOCKED;
+                continue;
+            }
+            match target.corners(self.tree).filter(|_| has_lanes()) {
+                None => self.test_each(simd, packet, target.place as usize, 1 << k),
+                // A ray never meets the triangle that it leaves.
+                Some(_) if number == left => {}
+                Some(corners) => {
+                    let ray = self.rays.plain_ray(k);
+                    let crossing = triangle_crossing(simd, corners, &ray, certain);
+                    if self.lane_test(&ray, k).crosses(number, crossing) {
+                        packet.limit[k] = BLOCKED;
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl<S: Simd, B, V> Searches<S> for Blocks<'_, B, V>
+where
+    B: Fn(u32) -> bool,
+    V: FnMut(usize, u32, Crossing) -> ControlFlow<()>,
+{
+    #[inline(always)]
+    fn leaf(&mut self, simd: S, packet: &mut Packet, met: u64, leaf: Content) {
+        match leaf {
+            Content::Spheres(block) => {
+                let block = &self.tree.spheres[block];
+                for k in lanes(met) {
+                    let ray = LeafRay::new(&packet.ray(k), 1.0);
+                    let candidates = block.sort_out(simd, &ray, packet.limit[k]);
+                    self.take(simd, packet, k, Target::sphere(block.first), &candidates);
+                }
+            }
+            Content::Triangles(block) => {
+                let block = &self.tree.triangles[block];
+                let first = Target::triangle(block.first, block.corners);
+                for k in lanes(met) {
+                    let ray = LeafRay::new(&packet.ray(k), 1.0);
+                    let candidates = block.sort_out(simd, &ray, packet.limit[k]);
+                    self.take(simd, packet, k, first, &candidates);
+                }
+            }
+            Content::One(place) => self.test(simd, packet, place, met),
+            Content::Node(_) => {}
+        }
+    }
+
+    #[inline(always)]
+    fn end(&self, packet: &Packet) -> f32 {
+        if packet.is_open() { self.end } else { f32::NEG_INFINITY }
+    }
+}
