@@ -127,7 +127,12 @@ pub(crate) fn options(
         }
     };
     let (size, depth, threads) = (args.size, args.depth, args.threads);
-    Ok(RenderOptions { size, aa, depth, threads, crop, goal })
+    Ok(RenderOptions { size, aa, depth, threads, crop, goal, camera: None })
+}
+
+/// What a picture file says of the options that decide every picture.
+pub(crate) fn words(options: &RenderOptions, scene: &Scene) -> String {
+    format!("aa={} depth={}", options.aa, options.depth.unwrap_or(scene.depth()))
 }
 
 /// What the picture file says of itself.
@@ -141,10 +146,7 @@ pub(crate) fn label(
     let [width, height] = size(args, scene);
     let mut words = match args.rules {
         Rules::Classic => vec!["rules=classic".to_owned()],
-        Rules::Whitted => vec![
-            format!("aa={}", options.aa),
-            format!("depth={}", options.depth.unwrap_or(scene.depth())),
-        ],
+        Rules::Whitted => vec![words(options, scene)],
     };
     words.extend(args.max_error.map(|error| format!("max-error={error}")));
     words.extend(args.time_limit.map(|seconds| format!("time-limit={seconds}")));
