@@ -2,11 +2,13 @@
 
 mod args;
 mod compare;
+mod completions;
 mod failure;
 mod finished;
 mod inspect;
 mod inspect_scene;
 mod job;
+mod man;
 mod memory;
 mod merge;
 mod options;
@@ -19,6 +21,7 @@ mod stats;
 mod streams;
 mod study;
 mod target;
+mod view;
 
 use std::process::ExitCode;
 use std::time::Instant;
@@ -39,6 +42,9 @@ pub(crate) fn run() -> ExitCode {
             Command::Inspect(args) => inspect::run(args),
             Command::Merge(args) => merge::run(args),
             Command::Scenes(args) => scenes::run(args),
+            Command::View(args) => view::run(args),
+            Command::Completions(args) => completions::run(args),
+            Command::Man(args) => man::run(args),
         },
         Err(error) if error.use_stderr() => Err(Failure::from_clap(&error)),
         Err(help_or_version) => streams::write_stdout(help_or_version.to_string().as_bytes()),
