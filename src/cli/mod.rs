@@ -13,6 +13,7 @@ mod memory;
 mod merge;
 mod options;
 mod parse;
+mod preview;
 mod progress;
 mod render;
 mod scenes;

@@ -30,6 +30,7 @@ pub(crate) fn check_classic(args: &RenderArgs) -> Result<(), Failure> {
         ("--crop", args.crop.is_some()),
         ("--tile", args.tile.is_some()),
         ("--resume", args.resume),
+        ("--preview", args.preview),
         ("--max-error", args.max_error.is_some()),
         ("--time-limit", args.time_limit.is_some()),
     ];

@@ -108,6 +108,10 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "MODE", value_enum, default_value_t, help_heading = "Messages")]
     pub(crate) progress: ProgressMode,
 
+    /// The picture in the terminal while it is rendered, block by block: two pixels a letter, in 24-bit colours
+    #[arg(long, conflicts_with = "quiet", help_heading = "Messages")]
+    pub(crate) preview: bool,
+
     /// Nothing on standard error but errors
     #[arg(short, long, help_heading = "Messages")]
     pub(crate) quiet: bool,
