@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
+use glam::DVec2;
 use whitted::aa::AntiAliasing;
 use whitted::camera::Camera;
 use whitted::film::{Label, OutputFile};
-use whitted::geometry::Ray;
 use whitted::render::RenderOptions;
 use whitted::render::refine::{Canvas, Shown};
 use whitted::scene::{CameraPlan, Orbit, Scene};
@@ -19,6 +19,9 @@ use super::controls::Action;
 
 /// How long the camera must rest before a pass other than the first is begun.
 const REST: Duration = Duration::from_millis(80);
+
+/// Rays, either way, by which what is seen is measured.
+const PROBES: u32 = 9;
 
 /// How much text stands in the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,11 +68,7 @@ impl Viewer {
             threads: args.threads,
             ..RenderOptions::default()
         };
-        let plan = *scene.camera_plan();
-        let middle = Ray::new(plan.eye, plan.look_at - plan.eye);
-        let length = middle.dir.length();
-        let distance = scene.nearest(&middle).map(|(hit, _)| hit.t * length);
-        let orbit = Orbit::new(plan, distance);
+        let orbit = Orbit::new(*scene.camera_plan(), distance(&scene));
         let canvas = Arc::new(Canvas::new(size));
         let quiet = args.quiet;
         let scene = Arc::new(scene);
@@ -240,6 +239,21 @@ impl Work {
     }
 }
 
+/// How far the point is about which the camera turns: where the scene's camera looks at, unless that is but a direction, nearer than anything to be
+/// seen; then as far as the nearer things are.
+fn distance(scene: &Scene) -> Option<f64> {
+    let plan = scene.camera_plan();
+    let view = plan.camera().ok()?.view(PROBES, PROBES);
+    let places = (0..PROBES).flat_map(|y| (0..PROBES).map(move |x| (x, y)));
+    let rays = places.map(|(x, y)| view.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5)));
+    let mut seen: Vec<f64> =
+        rays.filter_map(|ray| scene.nearest(&ray).map(|(hit, _)| hit.t)).collect();
+    seen.sort_unstable_by(f64::total_cmp);
+    let own = (plan.look_at - plan.eye).length();
+    let is_point = seen.first().is_none_or(|nearest| own >= *nearest);
+    if is_point { None } else { seen.get(seen.len() / 4).copied() }
+}
+
 /// `scene-view-1.png`, or with the first number that no file has.
 fn free_name(scene: &str) -> PathBuf {
     let name = |number: u32| PathBuf::from(format!("{scene}-view-{number}.png"));
@@ -292,6 +306,23 @@ mod tests {
         }
         assert_eq!((viewer.options.aa, viewer.options.depth), (AntiAliasing::None, Some(5)));
         assert!(!viewer.act(Action::End).expect("the end"));
+    }
+
+    /// Oracle: the spheres of the assignment stand between 60 and 100 in front of the camera, which looks at a point at 1; the camera of a model
+    /// looks at its middle.
+    #[test]
+    fn the_camera_turns_about_what_is_seen() {
+        let moved = |flags: &[&str]| {
+            let mut viewer = viewer(flags);
+            let before = *viewer.orbit.plan();
+            viewer.act(Action::Turn(1.0, 0.0)).expect("turned");
+            (before, *viewer.orbit.plan())
+        };
+        let (_, plan) = moved(&[]);
+        assert!((-110.0..-50.0).contains(&plan.look_at.z), "{plan:?}");
+        let model = concat!(env!("CARGO_MANIFEST_DIR"), "/models/crate/crate.obj");
+        let (before, plan) = moved(&[model]);
+        assert!((plan.look_at - before.look_at).length() < 1e-9 * before.eye.length());
     }
 
     /// The mouse moves faster than pictures are made.

@@ -35,7 +35,10 @@ pub(super) enum Event {
 /// The display, which must be there before anything else is done.
 pub(super) fn open_display() -> Result<EventLoop<Event>, Failure> {
     let events = EventLoop::with_user_event().build().map_err(|error| {
-        anyhow!("there is no display for a window ({error}); `whitted render --preview` shows a picture in a terminal")
+        // It begins with a place in the source of winit.
+        let text = error.to_string();
+        let reason = text.rsplit(": ").next().unwrap_or_default().trim_end_matches('.');
+        anyhow!("there is no display for a window ({reason}); `whitted render --preview` shows a picture in a terminal")
     })?;
     Ok(events)
 }
