@@ -13,6 +13,7 @@ use super::super::parse::{
 use super::SceneArgs;
 
 #[derive(Debug, clap::Args)]
+#[expect(clippy::struct_excessive_bools, reason = "flags are independent of each other")]
 #[command(after_help = "\
 Examples:
   whitted render --aa none --size 1200x1200 -o big.png

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use whitted::aa::AntiAliasing;
 use whitted::camera::Camera;
 use whitted::film::{Label, OutputFile};
@@ -267,7 +267,7 @@ fn numbers(numbers: [f64; 3], between: &str) -> String {
 /// The camera as flags and as TOML, with all digits.
 fn camera_text(plan: &CameraPlan, given: &str) -> String {
     let CameraPlan { eye, look_at, up, vertical_fov } = plan;
-    let [eye, look_at, up] = [eye, look_at, up].map(|v| v.to_array());
+    let [eye, look_at, up] = [eye, look_at, up].map(DVec3::to_array);
     format!(
         "--eye {} --look-at {}{given}\ncamera = {{ eye = [{}], look_at = [{}], up = [{}], vertical_fov = {vertical_fov:?} }}\n",
         numbers(eye, ","),
@@ -283,7 +283,6 @@ mod tests {
     use super::*;
     use crate::cli::args::{Args, Command};
     use clap::Parser;
-    use glam::DVec3;
 
     fn viewer(flags: &[&str]) -> Viewer {
         let args = Args::try_parse_from([&["whitted", "view"], flags].concat()).expect("flags");
