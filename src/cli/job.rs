@@ -16,6 +16,7 @@ use whitted::scene::Scene;
 
 use super::args::{ProgressMode, RenderArgs};
 use super::failure::Failure;
+use super::preview::{self, Preview};
 use super::progress::Reporter;
 use super::signals::Signals;
 use super::streams;
@@ -23,6 +24,8 @@ use super::target::Picture;
 
 /// How often a signal is looked for.
 const WATCH: Duration = Duration::from_millis(100);
+/// How often the preview is drawn.
+const PREVIEW: Duration = Duration::from_millis(300);
 
 /// What is rendered, and where to.
 pub(crate) struct Order<'a> {
@@ -49,7 +52,21 @@ struct Kept {
 /// Renders a picture and writes it; if it is stopped, writes what there is of it, and fails with the signal.
 pub(crate) fn run(order: &Order, args: &RenderArgs) -> Result<Finished, Failure> {
     let Order { options, label, picture, signals, .. } = order;
-    let mode = if args.quiet { ProgressMode::None } else { args.progress };
+    let mut preview = args.preview.then(Preview::on_terminal).flatten();
+    if args.preview && preview.is_none() {
+        note(
+            args,
+            "warning: --preview: standard error is no terminal that shows pictures; rendering without",
+        );
+    }
+    let mode = match args.progress {
+        _ if args.quiet => ProgressMode::None,
+        // The line below the picture tells it.
+        ProgressMode::Auto | ProgressMode::Bar | ProgressMode::Plain if preview.is_some() => {
+            ProgressMode::None
+        }
+        mode => mode,
+    };
     let pixels = f64::from(label.place().width()) * f64::from(label.place().height());
     let reporter = Reporter::new(mode, pixels);
     let places = blocks(&label.place(), options.aa, options.goal);
@@ -62,7 +79,7 @@ pub(crate) fn run(order: &Order, args: &RenderArgs) -> Result<Finished, Failure>
         kept.checkpoint = find(&job, path, args)?;
     }
     reporter.begin(job.share_done());
-    let effort = render(order, args, &job, &mut kept, stop)?;
+    let effort = render(order, args, &job, &mut kept, stop, preview.as_mut())?;
     reporter.end();
     if !job.is_complete() {
         return Err(leave(order, &job, kept));
@@ -114,21 +131,36 @@ fn find(job: &Job, path: &Path, args: &RenderArgs) -> Result<Option<Checkpoint>,
     }
 }
 
-/// Renders what the job has not, while another thread writes checkpoints.
+/// Draws what there is of the picture.
+fn draw(job: &Job, preview: &mut Preview) {
+    let line = format!("{:.0} %", 100.0 * job.share_done());
+    let frame = job.with_film(|film| preview.frame(film, &line));
+    preview::show(&frame);
+}
+
+/// Renders what the job has not, while another thread writes checkpoints and draws the preview.
 fn render(
     order: &Order,
     args: &RenderArgs,
     job: &Job,
     kept: &mut Kept,
     stop: &AtomicBool,
+    mut preview: Option<&mut Preview>,
 ) -> Result<Effort, RenderError> {
     let (ended, wake) = (Mutex::new(false), Condvar::new());
     std::thread::scope(|scope| {
         scope.spawn(|| {
             let interval = Duration::from_secs_f64(args.checkpoint);
             let (mut last, mut has_told, mut has_failed) = (Instant::now(), false, false);
+            let mut drawn = Instant::now();
             let mut guard = ended.lock().unwrap_or_else(PoisonError::into_inner);
             while !*guard {
+                if let Some(preview) = preview.as_deref_mut()
+                    && drawn.elapsed() >= PREVIEW
+                {
+                    draw(job, preview);
+                    drawn = Instant::now();
+                }
                 guard = wake.wait_timeout(guard, WATCH).unwrap_or_else(PoisonError::into_inner).0;
                 if stop.load(Ordering::Relaxed) && !has_told && !*guard {
                     has_told = true;
@@ -148,6 +180,9 @@ fn render(
                 }
                 has_failed = saved.is_err();
                 guard = ended.lock().unwrap_or_else(PoisonError::into_inner);
+            }
+            if let Some(preview) = preview {
+                draw(job, preview);
             }
         });
         let effort = render_blocks(order.scene, order.options, job);

@@ -2,15 +2,18 @@
 
 mod args;
 mod compare;
+mod completions;
 mod failure;
 mod finished;
 mod inspect;
 mod inspect_scene;
 mod job;
+mod man;
 mod memory;
 mod merge;
 mod options;
 mod parse;
+mod preview;
 mod progress;
 mod render;
 mod scenes;
@@ -19,6 +22,7 @@ mod stats;
 mod streams;
 mod study;
 mod target;
+mod view;
 
 use std::process::ExitCode;
 use std::time::Instant;
@@ -39,6 +43,9 @@ pub(crate) fn run() -> ExitCode {
             Command::Inspect(args) => inspect::run(args),
             Command::Merge(args) => merge::run(args),
             Command::Scenes(args) => scenes::run(args),
+            Command::View(args) => view::run(args),
+            Command::Completions(args) => completions::run(args),
+            Command::Man(args) => man::run(args),
         },
         Err(error) if error.use_stderr() => Err(Failure::from_clap(&error)),
         Err(help_or_version) => streams::write_stdout(help_or_version.to_string().as_bytes()),

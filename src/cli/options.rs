@@ -30,6 +30,7 @@ pub(crate) fn check_classic(args: &RenderArgs) -> Result<(), Failure> {
         ("--crop", args.crop.is_some()),
         ("--tile", args.tile.is_some()),
         ("--resume", args.resume),
+        ("--preview", args.preview),
         ("--max-error", args.max_error.is_some()),
         ("--time-limit", args.time_limit.is_some()),
     ];
@@ -127,7 +128,12 @@ pub(crate) fn options(
         }
     };
     let (size, depth, threads) = (args.size, args.depth, args.threads);
-    Ok(RenderOptions { size, aa, depth, threads, crop, goal })
+    Ok(RenderOptions { size, aa, depth, threads, crop, goal, camera: None })
+}
+
+/// What a picture file says of the options that decide every picture.
+pub(crate) fn words(options: &RenderOptions, scene: &Scene) -> String {
+    format!("aa={} depth={}", options.aa, options.depth.unwrap_or(scene.depth()))
 }
 
 /// What the picture file says of itself.
@@ -141,10 +147,7 @@ pub(crate) fn label(
     let [width, height] = size(args, scene);
     let mut words = match args.rules {
         Rules::Classic => vec!["rules=classic".to_owned()],
-        Rules::Whitted => vec![
-            format!("aa={}", options.aa),
-            format!("depth={}", options.depth.unwrap_or(scene.depth())),
-        ],
+        Rules::Whitted => vec![words(options, scene)],
     };
     words.extend(args.max_error.map(|error| format!("max-error={error}")));
     words.extend(args.time_limit.map(|seconds| format!("time-limit={seconds}")));

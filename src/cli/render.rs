@@ -9,7 +9,7 @@ use whitted::classic::{CLASSIC_SIZE, render_classic};
 use whitted::film::metrics::read_png_rgb8;
 use whitted::film::{Difference, Film, Label, Share, encode};
 use whitted::render::{RayCounts, RenderOptions, Rendering};
-use whitted::scene::{LoadOptions, Loaded, Scene};
+use whitted::scene::{Loaded, Scene};
 
 use super::args::{ProgressMode, RenderArgs, Rules};
 use super::failure::{Failure, warn};
@@ -37,16 +37,8 @@ pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
     check_parts(args)?;
     check_size(args)?;
     let loading = Instant::now();
-    let load_options = LoadOptions {
-        models: args.models.clone(),
-        eye: args.eye,
-        look_at: args.look_at,
-        up: args.up,
-        fov: args.fov,
-        objects: args.objects,
-        rows: (args.rules == Rules::Classic).then_some(CLASSIC_SIZE),
-    };
-    let Loaded { scene, warnings: odd } = whitted::scene::load(&args.scene, &load_options)?;
+    let rows = (args.rules == Rules::Classic).then_some(CLASSIC_SIZE);
+    let Loaded { scene, warnings: odd } = args.seen.load(rows)?;
     warn(&odd, args.strict, args.quiet)?;
     let build = scene.bvh_stats().build_seconds;
     let load = (loading.elapsed().as_secs_f64() - build).max(0.0);

@@ -155,6 +155,29 @@ impl Film {
         (colors.collect(), samples.collect())
     }
 
+    /// The film with another number of pixels, each the nearest one of this film.
+    #[must_use]
+    pub fn resampled(&self, [width, height]: [u32; 2]) -> Self {
+        let from = |k: u32, to: u32, of: u32| {
+            // The middle of the pixel, in halves of pixels.
+            ((2 * u64::from(k) + 1) * u64::from(of) / (2 * u64::from(to))) as u32
+        };
+        let mut film = Self::new(width, height);
+        if self.pixels.is_empty() {
+            return film;
+        }
+        for y in 0..height {
+            for x in 0..width {
+                let (to, at) = (
+                    film.index(x, y),
+                    self.index(from(x, width, self.width), from(y, height, self.height)),
+                );
+                (film.pixels[to], film.samples[to]) = (self.pixels[at], self.samples[at]);
+            }
+        }
+        film
+    }
+
     fn index(&self, x: u32, y: u32) -> usize {
         y as usize * self.width as usize + x as usize
     }
@@ -185,6 +208,19 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn resampled_pixels_are_the_nearest() {
+        let pixels: Vec<Rgb> = (0..6).map(|k| Rgb::splat(k as f32)).collect();
+        let film = Film::from_parts(3, 2, pixels, (1..7).collect());
+        assert_eq!(film.resampled([3, 2]), film);
+        let large = film.resampled([9, 4]);
+        for (x, y) in (0..9).flat_map(|x| (0..4).map(move |y| (x, y))) {
+            assert_eq!(large.pixel(x, y), film.pixel(x / 3, y / 2), "{x}, {y}");
+        }
+        assert_eq!(large.resampled([3, 2]), film);
+        assert_eq!(film.resampled([1, 1]).pixel(0, 0), film.pixel(1, 1));
     }
 
     #[test]

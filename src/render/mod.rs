@@ -7,6 +7,7 @@ mod goal;
 mod look;
 mod plain;
 mod plane;
+pub mod refine;
 mod round;
 mod thin;
 mod whole;
@@ -26,6 +27,7 @@ pub use crew::Sampler;
 pub use crate::trace::RayCounts;
 use crate::{
     aa::AntiAliasing,
+    camera::Camera,
     color::Rgb,
     film::{Film, Tile},
     scene::Scene,
@@ -42,6 +44,8 @@ use worker::Worker;
 pub struct RenderOptions {
     /// Width and height in pixels, instead of the scene's.
     pub size: Option<[u32; 2]>,
+    /// Where the scene is seen from, in the coordinates of its description, instead of from the scene's own place.
+    pub camera: Option<Camera>,
     /// How pixels are sampled.
     pub aa: AntiAliasing,
     /// The deepest level of recursion, instead of the scene's; camera rays have level 1.
@@ -292,7 +296,8 @@ pub fn render_blocks(
         .num_threads(threads)
         .build()
         .map_err(|source| RenderError::Threads { threads, source })?;
-    let (view, mode) = (scene.camera().view(width, height), (options.aa, options.goal));
+    let camera = options.camera.map_or(*scene.camera(), |camera| scene.own_camera(camera));
+    let (view, mode) = (camera.view(width, height), (options.aa, options.goal));
     let is_adaptive = matches!(options.aa, AntiAliasing::Adaptive { .. });
     let thin = is_adaptive.then(|| thin::least_samples(scene, &view, &Area::of(&part))).flatten();
     let block = |number: usize, place: &Tile, progress: &(dyn Fn(Progress) + Sync)| {

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::Scene;
 use crate::{
+    camera::Camera,
     geometry::{Mesh, Shape},
     material::Material,
     texture::{Image, Texture, UvMap},
@@ -20,8 +21,17 @@ impl Scene {
     ///
     /// What a user may choose for a picture, such as its size and the depth of recursion, is not in it.
     pub fn hash(&self) -> String {
+        self.hash_seen_by(&self.camera)
+    }
+
+    /// The hash of the scene as another camera sees it, which is given in the coordinates of the description.
+    pub fn hash_from(&self, camera: Camera) -> String {
+        self.hash_seen_by(&self.own_camera(camera))
+    }
+
+    fn hash_seen_by(&self, camera: &Camera) -> String {
         let mut hash = Hash { hasher: blake3::Hasher::new(), bytes: Vec::with_capacity(AT_ONCE) };
-        hash.text(&format_args!("{:?} {:?} {:?}", self.camera, self.background, self.cutoff));
+        hash.text(&format_args!("{:?} {:?} {:?}", camera, self.background, self.cutoff));
         hash.count(self.lights.len());
         self.lights.iter().for_each(|light| hash.text(&format_args!("{light:?}")));
         hash.count(self.materials.len());

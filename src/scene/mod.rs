@@ -14,6 +14,7 @@ pub mod load;
 pub mod nff;
 pub mod obj;
 pub mod open;
+mod orbit;
 mod parts;
 mod report;
 mod shapes;
@@ -30,6 +31,7 @@ pub use self::{
     desc::SceneDesc,
     error::SceneError,
     open::{LoadOptions, Loaded, ModelPlace, load},
+    orbit::Orbit,
     parts::{CameraPlan, MeshPart, Parts},
     report::{Names, SceneReport, inspect_scene},
     warning::Warning,
@@ -53,6 +55,7 @@ pub struct Scene {
     depth: u32,
     cutoff: f32,
     map: Similarity,
+    camera_plan: CameraPlan,
     // The rest is in the scene's own coordinates.
     aa: Option<AntiAliasing>,
     camera: Camera,
@@ -117,6 +120,7 @@ impl Scene {
             depth,
             cutoff: parts.cutoff,
             aa: parts.aa,
+            camera_plan: parts.camera,
             camera: camera.mapped(&map),
             background: parts.background,
             lights: lights
@@ -144,6 +148,11 @@ impl Scene {
     /// The deepest level of recursion, unless the user wants another.
     pub fn depth(&self) -> u32 {
         self.depth
+    }
+
+    /// Where the scene is seen from, unless the user wants another place.
+    pub fn camera_plan(&self) -> &CameraPlan {
+        &self.camera_plan
     }
 
     /// How pixels are sampled, if the scene says it and the user does not.
@@ -200,6 +209,11 @@ impl Scene {
 
     pub(crate) fn camera(&self) -> &Camera {
         &self.camera
+    }
+
+    /// Another camera, which is given in the coordinates of the description.
+    pub(crate) fn own_camera(&self, camera: Camera) -> Camera {
+        camera.mapped(&self.map)
     }
 
     pub(crate) fn background(&self) -> Rgb {

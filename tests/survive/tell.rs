@@ -72,3 +72,27 @@ fn a_terminal_gets_a_bar_and_a_dumb_one_gets_lines() {
     assert!(bar.contains("pixels/s") && bar.contains(" left"), "{bar:?}");
     assert!(dumb.contains("wrote assignment.png") && !dumb.contains('\x1b'), "{dumb:?}");
 }
+
+/// Oracle: the same render without a preview. `script` (util-linux) gives it a terminal of 80 x 24, where it is installed.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_preview_is_drawn_on_a_terminal_and_changes_nothing() {
+    let folder = folder();
+    let preview = [&SMALL[..], &["plain", "--preview", "-o", "a.png"]].concat();
+    let output = run(folder.path(), &preview);
+    done(&output);
+    assert!(said(&output).contains("warning: --preview: ") && !said(&output).contains('▀'));
+    let bytes = |name: &str| std::fs::read(folder.path().join(name)).expect(name);
+    done(&run(folder.path(), &[&SMALL[..], &["none", "-o", "b.png"]].concat()));
+    assert!(bytes("a.png") == bytes("b.png"));
+
+    let program = env!("CARGO_BIN_EXE_whitted");
+    let command = format!("{program} {}", preview.join(" ").replace("a.png", "c.png"));
+    let mut script = std::process::Command::new("script");
+    script.current_dir(folder.path()).env("TERM", "xterm").args(["-qec", &command, "/dev/null"]);
+    let Ok(output) = script.stdin(std::process::Stdio::null()).output() else { return };
+    let told = String::from_utf8_lossy(&output.stdout);
+    let drawn = told.lines().filter(|line| line.matches('▀').count() == 59).count();
+    assert!(drawn >= 22 && drawn % 22 == 0 && told.contains("100 %"), "{drawn}: {told}");
+    assert!(bytes("c.png") == bytes("b.png"));
+}

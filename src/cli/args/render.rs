@@ -1,0 +1,149 @@
+//! The flags of `whitted render`.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use clap::ValueEnum;
+use whitted::aa::AntiAliasing;
+use whitted::film::{Share, Tile};
+
+use super::super::parse::{
+    parse_crop, parse_depth, parse_error, parse_seconds, parse_shares, parse_sides, parse_threads,
+};
+use super::SceneArgs;
+
+#[derive(Debug, clap::Args)]
+#[expect(clippy::struct_excessive_bools, reason = "flags are independent of each other")]
+#[command(after_help = "\
+Examples:
+  whitted render --aa none --size 1200x1200 -o big.png
+  whitted render --max-error 1                     within 1 level of 255 of the exact picture
+  whitted render --time-limit 2                    the best picture in two seconds
+  whitted render spheres --objects 1000000
+  whitted render --obj model.obj@8,-15,-75*6       a model in the assignment scene
+  whitted render model.obj --eye 3,2,5 --look-at 0,1,0 --fov 40
+  whitted render scene.toml --tile 3/64            one of 64 shares, for `whitted merge`
+
+Exit codes: 0 done; 1 the render or the writing failed; 2 wrong usage; 3 the scene or a model is invalid;
+4 a warning under --strict; 5 a checkpoint does not match; 130 interrupted; 143 terminated")]
+pub(crate) struct RenderArgs {
+    #[command(flatten)]
+    pub(crate) seen: SceneArgs,
+
+    /// Picture to write: .png (8-bit sRGB), .exr (linear 32-bit floats, and the rays of each pixel as a second layer), .ppm (8-bit
+    /// sRGB), or - for a PNG on standard output [default: the scene's name with .png, in the current folder]
+    #[arg(short, long, value_name = "FILE", help_heading = "Picture")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Width and height in pixels, such as 640x480; at most what 16 GiB of memory hold, for each tile if there are some
+    /// [default: the scene's own]
+    #[arg(long, value_name = "WxH", value_parser = parse_sides, help_heading = "Picture")]
+    pub(crate) size: Option<[u32; 2]>,
+
+    /// Anti-aliasing: none (one ray per pixel), grid:N (N x N rays per pixel), or adaptive[:ERROR[,MAX]] (rays where the
+    /// picture needs them, until a pixel's estimated error is below ERROR levels of 255 or it has MAX rays; 4 and 64 by
+    /// default) [default: adaptive]
+    #[arg(long, value_name = "MODE", help_heading = "Quality")]
+    pub(crate) aa: Option<AntiAliasing>,
+
+    /// Estimated root-mean-square error of the picture, in levels of 255, to get below; rays go where they reduce it most.
+    /// With --crop that of the part, so the part then equals the whole picture only if both end at the same squared error
+    /// per ray, which is reported; adaptive:ERROR has no such catch
+    #[arg(long, value_name = "E", value_parser = parse_error, allow_negative_numbers = true, help_heading = "Quality")]
+    pub(crate) max_error: Option<f64>,
+
+    /// Seconds from the start of the program to the written picture; the best picture that they allow, whose error is
+    /// reported. It is not the same every time
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, conflicts_with = "max_error",
+        allow_negative_numbers = true, help_heading = "Quality")]
+    pub(crate) time_limit: Option<f64>,
+
+    /// Part of the picture to render, in pixels from the upper left, half open, such as 100,50,200,80; the same pixels as in
+    /// the whole picture
+    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = parse_crop, allow_hyphen_values = true, help_heading = "Picture")]
+    pub(crate) crop: Option<Tile>,
+
+    /// Share of the picture to render, the I-th of N equal ones counted from 1, for many machines; several, such as 3/64,7/64,
+    /// one after another with the scene read once. Each goes to a file of its own, named like scene-3of64.png unless
+    /// --output names it; with several tiles, -3of64 is put into the name that --output gives. `whitted merge` joins them
+    #[arg(long, value_name = "I/N[,I/N...]", value_parser = parse_shares, conflicts_with = "crop", help_heading = "Picture")]
+    pub(crate) tile: Option<Shares>,
+
+    /// Go on from the checkpoint that an interrupted render of the same picture left beside the output; from the beginning if
+    /// there is none. What is finished already is not rendered again
+    #[arg(long, help_heading = "Long renders")]
+    pub(crate) resume: bool,
+
+    /// Seconds between checkpoints, beside the output with .checkpoint behind its name; it is deleted when the picture is
+    /// finished. Pictures on standard output, and those with --max-error or --time-limit, have none
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, default_value = "30",
+        allow_negative_numbers = true, help_heading = "Long renders")]
+    pub(crate) checkpoint: f64,
+
+    /// PNG of the same size to measure the error against
+    #[arg(long, value_name = "FILE", help_heading = "Quality")]
+    pub(crate) reference: Option<PathBuf>,
+
+    /// Deepest level of recursion, camera rays being level 1 [default: the scene's own]
+    #[arg(long, value_name = "N", value_parser = parse_depth, allow_negative_numbers = true, help_heading = "Quality")]
+    pub(crate) depth: Option<u32>,
+
+    /// Threads to render with, at most 4096 [default: one per core]
+    #[arg(long, value_name = "N", value_parser = parse_threads, allow_negative_numbers = true, help_heading = "Long renders")]
+    pub(crate) threads: Option<NonZeroUsize>,
+
+    /// Shading rules: whitted, or classic (those that ray counts of the Standard Procedural Databases
+    /// are compared by: 513x513 rays through the corners of 512x512 pixels)
+    #[arg(long, value_name = "RULES", value_enum, default_value_t, help_heading = "Quality")]
+    pub(crate) rules: Rules,
+
+    /// What would be a warning is an error
+    #[arg(long, help_heading = "Messages")]
+    pub(crate) strict: bool,
+
+    /// Statistics to write as JSON; - is standard output
+    #[arg(long, value_name = "FILE", help_heading = "Messages")]
+    pub(crate) stats: Option<PathBuf>,
+
+    /// Progress on standard error
+    #[arg(long, value_name = "MODE", value_enum, default_value_t, help_heading = "Messages")]
+    pub(crate) progress: ProgressMode,
+
+    /// The picture in the terminal while it is rendered, block by block: two pixels a letter, in 24-bit colours
+    #[arg(long, conflicts_with = "quiet", help_heading = "Messages")]
+    pub(crate) preview: bool,
+
+    /// Nothing on standard error but errors
+    #[arg(short, long, help_heading = "Messages")]
+    pub(crate) quiet: bool,
+}
+
+/// Shares of a picture, each named once.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Shares(pub(crate) Vec<Share>);
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Rules {
+    /// Those of the assignment
+    #[default]
+    Whitted,
+    /// Those of the Standard Procedural Databases
+    Classic,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ProgressMode {
+    /// A bar on a terminal, plain lines elsewhere
+    #[default]
+    Auto,
+    /// A bar with the time left, even where there is no terminal
+    Bar,
+    /// A line every 5 seconds
+    Plain,
+    /// JSON objects, one a line, up to ten a second
+    Json,
+    /// Lines for Open Job Description, at most one a second
+    Openjd,
+    /// No progress
+    None,
+}

@@ -1,0 +1,29 @@
+//! `whitted view`: a window to look around in.
+
+#[cfg(feature = "view")]
+mod controls;
+#[cfg(feature = "view")]
+mod text;
+#[cfg(feature = "view")]
+mod viewer;
+#[cfg(feature = "view")]
+mod window;
+
+use super::args::ViewArgs;
+use super::failure::Failure;
+
+/// Opens the window, and ends when it is closed.
+#[cfg(feature = "view")]
+pub(crate) fn run(args: &ViewArgs) -> Result<(), Failure> {
+    let events = window::open_display()?;
+    let loaded = args.seen.load(None)?;
+    super::failure::warn(&loaded.warnings, args.strict, args.quiet)?;
+    window::run(events, viewer::Viewer::new(loaded.scene, args))
+}
+
+/// A program without windows says how to get one that has them.
+#[cfg(not(feature = "view"))]
+pub(crate) fn run(_args: &ViewArgs) -> Result<(), Failure> {
+    let message = "this program was built without windows; `cargo install --path . --features view` builds one that has them";
+    Err(anyhow::anyhow!(message).into())
+}
