@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3, Vec3};
 use thiserror::Error;
 
 use super::{
@@ -236,21 +236,28 @@ impl Shape {
                     let q = origin.get(k) - s.center() + dir.get(k) * t[k];
                     surfaces.set_if(k, met >> k & 1 != 0, &s.surface_at(q), dir.get(k));
                 }
-                if with_uv {
-                    lanes(met).for_each(|k| surfaces.uv[k] = Sphere::uv(surfaces.shading(k)));
-                }
-                return true;
+                None
             }
-            Self::Quad(s) => s.plane(),
-            Self::Triangle(s) => s.plane(),
+            Self::Quad(s) => Some(s.plane()),
+            Self::Triangle(s) => Some(s.plane()),
             _ => return false,
         };
-        for k in hull(met) {
-            let surface = flat::surface(plane, origin.get(k), dir.get(k), t[k], DVec3::ZERO);
-            surfaces.set_if(k, met >> k & 1 != 0, &surface, dir.get(k));
+        if let Some(plane) = plane {
+            for k in hull(met) {
+                let surface = flat::surface(plane, origin.get(k), dir.get(k), t[k], DVec3::ZERO);
+                surfaces.set_if(k, met >> k & 1 != 0, &surface, dir.get(k));
+            }
         }
-        if let (Self::Quad(s), true) = (self, with_uv) {
-            lanes(met).for_each(|k| surfaces.uv[k] = s.uv(surfaces.local.get(k)));
+        // Lanes keep what was there before, which may be a mesh's.
+        for k in lanes(met) {
+            surfaces.tint[k] = Vec3::ONE;
+            if with_uv {
+                surfaces.uv[k] = match self {
+                    Self::Sphere(_) => Sphere::uv(surfaces.shading(k)),
+                    Self::Quad(s) => s.uv(surfaces.local.get(k)),
+                    _ => DVec2::ZERO,
+                };
+            }
         }
         true
     }

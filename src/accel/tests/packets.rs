@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3, Vec3};
 
 use super::{
     bits, crossings,
@@ -103,7 +103,10 @@ fn check(name: &str, accel: &Accel, rays: &[Ray]) -> usize {
 /// Checks that surfaces found in lanes are those found one by one.
 fn check_surfaces(accel: &Accel, rays: &RayLanes, hits: &HitLanes, expected: &SurfaceLanes) {
     let mut open = rays.used & hits.found();
-    let mut found = SurfaceLanes::NONE;
+    // What other surfaces have left in the lanes must not matter.
+    let left = (Vec3::splat(f32::NAN), DVec2::splat(f64::NAN));
+    let mut found =
+        SurfaceLanes { tint: [left.0; LANES], uv: [left.1; LANES], ..SurfaceLanes::NONE };
     while open != 0 {
         let shape = accel.shape(hits.primitive[open.trailing_zeros() as usize]);
         let same = hits.alike(open);
@@ -112,10 +115,10 @@ fn check_surfaces(accel: &Accel, rays: &RayLanes, hits: &HitLanes, expected: &Su
             for k in lanes(same) {
                 let bits = |all: &SurfaceLanes| {
                     let vectors = [&all.point, &all.local, &all.facing, &all.start];
-                    let uv = if shape.has_uv() { all.uv[k].to_array() } else { [0.0; 2] };
                     (
                         vectors.map(|v| v.get(k).to_array().map(f64::to_bits)),
-                        uv.map(f64::to_bits),
+                        all.uv[k].to_array().map(f64::to_bits),
+                        all.tint[k].to_array().map(f32::to_bits),
                         all.is_inside(k),
                     )
                 };
