@@ -5,11 +5,7 @@
 
 use glam::Vec3;
 
-use super::{
-    Sample,
-    levels::{levels, squared_distance},
-};
-use crate::color::Rgb;
+use super::levels::squared_distance;
 
 /// The error of a single centre, as a share of its squared differences to neighbours of another signature.
 const CENTER_EDGE: f32 = 0.022;
@@ -133,9 +129,9 @@ impl Spread {
         Self { origin, ..Self::default() }
     }
 
-    /// Takes in a sample.
-    pub fn add(&mut self, color: Rgb, signature: u32) {
-        let deviation = levels(color) - self.origin;
+    /// Takes in a sample by its display levels.
+    pub fn add(&mut self, levels: Vec3, signature: u32) {
+        let deviation = levels - self.origin;
         self.deviation += deviation;
         self.square += deviation.length_squared() / 3.0;
         self.count += 1;
@@ -237,17 +233,17 @@ pub fn bare_sequence_share(points: u32) -> f32 {
 /// The share of the variance that a grid of 2 × 2 samples leaves.
 pub const GRID_OF_FOUR: f32 = 0.068;
 
-/// What interleaved parts of a grid of `side` × `side` samples, given row by row, differ by: the squared error that their mean would have if
+/// What interleaved parts of a grid of `side` × `side` samples, their display levels given row by row, differ by: the squared error that their mean would have if
 /// they were independent. The parts are four grids, or three diagonals of 3 × 3 samples.
 ///
 /// They are even patterns as well, whatever they show, so what they leave tells what the whole leaves: for random samples all
 /// of this, at a single edge a third.
-pub fn interleaved(samples: &[Sample], side: usize) -> f32 {
+pub fn interleaved(levels: &[Vec3], side: usize) -> f32 {
     let (mut sums, mut counts) = ([Vec3::ZERO; 4], [0_u32; 4]);
-    for (k, sample) in samples.iter().enumerate() {
+    for (k, level) in levels.iter().enumerate() {
         let (row, column) = (k / side, k % side);
         let part = if side == 3 { (row + column) % 3 } else { row % 2 * 2 + column % 2 };
-        sums[part] += levels(sample.color);
+        sums[part] += *level;
         counts[part] += 1;
     }
     let parts = if side == 3 { 3 } else { 4 };
@@ -292,19 +288,16 @@ mod tests {
     /// squared deviation from 63.75 is 3/16 of 255²; their mean has a third of that.
     #[test]
     fn interleaved_grids_are_compared() {
-        let sample = |k: usize| Sample {
-            color: Rgb::splat(f32::from(u8::from(k / 4 % 2 == 1 && k % 2 == 1))),
-            ..Sample::default()
-        };
-        let samples: Vec<Sample> = (0..16).map(sample).collect();
+        let level = |k: usize| Vec3::splat(if k / 4 % 2 == 1 && k % 2 == 1 { 255.0 } else { 0.0 });
+        let levels: Vec<Vec3> = (0..16).map(level).collect();
         let expected = 255.0_f32.powi(2) * 3.0 / 16.0 / 3.0;
-        assert!((interleaved(&samples, 4) / expected - 1.0).abs() < 1e-4);
-        assert_eq!(interleaved(&[samples[5]; 36], 6), 0.0);
+        assert!((interleaved(&levels, 4) / expected - 1.0).abs() < 1e-4);
+        assert_eq!(interleaved(&[levels[5]; 36], 6), 0.0);
         // One diagonal of three is white: levels 255, 0 and 0, by 85 twice and 170 from their mean.
-        let samples: Vec<Sample> =
-            (0..9_usize).map(|k| samples[if (k / 3 + k % 3) % 3 == 0 { 5 } else { 0 }]).collect();
+        let levels: Vec<Vec3> =
+            (0..9_usize).map(|k| levels[if (k / 3 + k % 3) % 3 == 0 { 5 } else { 0 }]).collect();
         let expected = 85.0_f32.powi(2) * 6.0 / 6.0;
-        assert!((interleaved(&samples, 3) / expected - 1.0).abs() < 1e-4);
+        assert!((interleaved(&levels, 3) / expected - 1.0).abs() < 1e-4);
     }
 
     /// Oracle: the variance of a handful of numbers, worked by hand; grey 0 is level 0, grey 1 is level 255.
@@ -312,7 +305,7 @@ mod tests {
     fn spread_is_the_unbiased_variance() {
         let mut spread = Spread::about(Vec3::splat(100.0));
         for (grey, signature) in [(0.0, 5), (1.0, 6), (1.0, 6), (0.0, 5)] {
-            spread.add(Rgb::splat(grey), signature);
+            spread.add(Vec3::splat(255.0 * grey), signature);
         }
         let expected = 4.0 * 127.5_f32.powi(2) / 3.0;
         assert!((spread.variance() / expected - 1.0).abs() < 1e-4, "{}", spread.variance());

@@ -73,12 +73,13 @@ impl Quarters {
 impl Refined {
     /// A pixel with its centre and corners.
     pub fn new(center: &Sample, corners: &[(Rgb, u32); 4]) -> Self {
-        let mut spread = Spread::about(levels(center.color));
-        spread.add(center.color, center.signature);
+        let origin = levels(center.color);
+        let mut spread = Spread::about(origin);
+        spread.add(origin, center.signature);
         let mut cross = center.color * 0.5;
         for (color, signature) in corners {
             cross += *color * 0.125;
-            spread.add(*color, *signature);
+            spread.add(levels(*color), *signature);
         }
         Self { cross, sum: Rgb::ZERO, points: 0, spread, quarters: Quarters::default() }
     }
@@ -90,10 +91,11 @@ impl Refined {
 
     /// Takes in the next sample of the pixel's sequence.
     pub fn add(&mut self, sample: &Sample) {
-        self.quarters.add(self.points, levels(sample.color));
+        let levels = levels(sample.color);
+        self.quarters.add(self.points, levels);
         self.sum += sample.color;
         self.points += 1;
-        self.spread.add(sample.color, sample.signature);
+        self.spread.add(levels, sample.signature);
     }
 
     /// How many samples of the sequence there are.

@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use glam::DVec2;
+use glam::{DVec2, Vec3};
 
 use super::{
     Outcome, Picture,
@@ -12,7 +12,6 @@ use super::{
 };
 use crate::{
     aa::{
-        Sample,
         estimate::{
             GRID_OF_FOUR, Spread, bare_sequence_share, grid_unseen, interleaved, interleaved_share,
             sequence_unseen,
@@ -59,12 +58,12 @@ pub(super) fn grid<S: Sampler + Send>(crew: &Crew<S>, area: &Area, side: u32) ->
     let places = |x: i64, y: i64, places: &mut Vec<DVec2>| {
         places.extend(grid_places(DVec2::new(x as f64, y as f64), side));
     };
-    let judge = |samples: &[Sample], spread: &Spread| {
+    let judge = |levels: &[Vec3], spread: &Spread| {
         // Without any edge it is at most half of what it is at one.
         let part = if spread.kinds() == 1 { 0.5 } else { 1.0 };
         part * match side {
             2 => spread.error(GRID_OF_FOUR, 0.0),
-            _ => interleaved_share(side) * interleaved(samples, side as usize),
+            _ => interleaved_share(side) * interleaved(levels, side as usize),
         }
     };
     even(crew, area, side * side, places, judge, grid_unseen(side))
@@ -82,18 +81,18 @@ pub(super) fn sequence<S: Sampler + Send>(
         let corner = DVec2::new(x as f64, y as f64);
         places.extend((0..count).map(|point| corner + sequence.place(point)));
     };
-    let judge = |_: &[Sample], spread: &Spread| spread.error(bare_sequence_share(count), 0.0);
+    let judge = |_: &[Vec3], spread: &Spread| spread.error(bare_sequence_share(count), 0.0);
     even(crew, area, count, places, judge, sequence_unseen(count))
 }
 
 /// `count` rays through each pixel at the places that `pixel_places` adds to a list. `judge` tells the squared error of their
-/// mean; where they are alike, `unseen` of the contrast to the neighbours is added.
+/// mean from their display levels; where they are alike, `unseen` of the contrast to the neighbours is added.
 fn even<S: Sampler + Send>(
     crew: &Crew<S>,
     area: &Area,
     count: u32,
     pixel_places: impl Fn(i64, i64, &mut Vec<DVec2>) + Sync,
-    judge: impl Fn(&[Sample], &Spread) -> f32 + Sync,
+    judge: impl Fn(&[Vec3], &Spread) -> f32 + Sync,
     unseen: f32,
 ) -> Picture {
     let cells = Mutex::new(Plane::new(*area, Cell::default()));
@@ -106,6 +105,7 @@ fn even<S: Sampler + Send>(
         |sampler, scratch, tile| {
             let mut own = vec![Cell::default(); tile.len()];
             let pixels: Vec<(i64, i64)> = in_turn(tile).collect();
+            let mut seen = Vec::with_capacity(count);
             for some in pixels.chunks(pixels_at_once) {
                 scratch.places.clear();
                 scratch.samples.clear();
@@ -114,16 +114,18 @@ fn even<S: Sampler + Send>(
                 }
                 sampler.sample(&scratch.places, &mut scratch.samples);
                 for ((x, y), samples) in some.iter().zip(scratch.samples.chunks(count)) {
-                    let mut spread = Spread::about(levels(samples[0].color));
+                    seen.clear();
+                    seen.extend(samples.iter().map(|sample| levels(sample.color)));
+                    let mut spread = Spread::about(seen[0]);
                     let mut sum = Rgb::ZERO;
-                    for sample in samples {
+                    for (sample, levels) in samples.iter().zip(&seen) {
                         sum += sample.color;
-                        spread.add(sample.color, sample.signature);
+                        spread.add(*levels, sample.signature);
                     }
                     let only = spread.only_signature();
                     own[tile.place_of(*x, *y)] = Cell {
                         color: sum / count as f32,
-                        error: judge(samples, &spread),
+                        error: judge(&seen, &spread),
                         signature: only.unwrap_or((x * 31 + y * 17) as u32),
                         alike: only.is_some(),
                     };
