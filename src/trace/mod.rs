@@ -239,13 +239,13 @@ impl<'a> Tracer<'a> {
         let scene = self.scene;
         let (shape, material) = (scene.shape(primitive), scene.material(primitive));
         let batch = &*self.batch;
-        let together = is_camera && same.count_ones() >= FEWEST && {
+        let goes_on = material.reflection > 0.0 || material.is_transmissive();
+        let together = is_camera && !goes_on && same.count_ones() >= FEWEST && {
             let rays = RayLanes { origin: &batch.origin, dir: &batch.dir, from: None, used: same };
             let with_uv = material.texture.needs_uv();
             shape.surface_lanes(&rays, &batch.hits.t, same, with_uv, &mut self.lit.surfaces)
         };
-        let goes_on = material.reflection > 0.0 || material.is_transmissive();
-        if !together || goes_on {
+        if !together {
             for k in lanes(same) {
                 let hit = self.batch.hits.get(k);
                 let ray = if is_camera {
@@ -254,9 +254,7 @@ impl<'a> Tracer<'a> {
                     self.batch.rays[k]
                 };
                 let surface = shape.surface(&ray, &hit);
-                if !together {
-                    self.lit.surfaces.set(k, shape, &surface, ray.dir);
-                }
+                self.lit.surfaces.set(k, shape, &surface, ray.dir);
                 if goes_on {
                     self.go_on(k, ray.dir, &hit, &surface, material);
                 }
