@@ -19,6 +19,36 @@ pub struct Sample {
     pub rays: u32,
 }
 
+/// How far a pixel is refined: by centre and corners, and so many samples of its sequence.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stage {
+    /// The samples of the sequence; 0 is centre and corners alone.
+    pub points: u32,
+    /// The shares of [`sequence_share`], [`quarters_share`] and [`sequence_unseen`].
+    share: f32,
+    quarters: f32,
+    unseen: f32,
+}
+
+impl Stage {
+    fn new(points: u32) -> Self {
+        let (share, quarters) = (sequence_share(points), quarters_share(points));
+        Self { points, share, quarters, unseen: sequence_unseen(points) }
+    }
+}
+
+/// The stages of a pixel after its centre, for at most `most` rays through a pixel: a corner of its own (others belong to
+/// neighbours), then 4, 8, 16, ... samples.
+pub fn stages(most: u32) -> Vec<Stage> {
+    let most = most.saturating_sub(2);
+    if most < 2 {
+        return Vec::new();
+    }
+    let powers = (2..31).map(|k| 1_u32 << k);
+    let samples = powers.take_while(|points| *points < most);
+    [0].into_iter().chain(samples).chain([most]).map(Stage::new).collect()
+}
+
 /// The samples of a pixel so far.
 #[derive(Clone, Debug)]
 pub struct Refined {
@@ -26,6 +56,7 @@ pub struct Refined {
     cross: Rgb,
     sum: Rgb,
     points: u32,
+    stage: Stage,
     spread: Spread,
     quarters: Quarters,
 }
@@ -71,8 +102,8 @@ impl Quarters {
 }
 
 impl Refined {
-    /// A pixel with its centre and corners.
-    pub fn new(center: &Sample, corners: &[(Rgb, u32); 4]) -> Self {
+    /// A pixel with its centre and corners, which are the first of its [`stages`].
+    pub fn new(stage: Stage, center: &Sample, corners: &[(Rgb, u32); 4]) -> Self {
         let origin = levels(center.color);
         let mut spread = Spread::about(origin);
         spread.add(origin, center.signature);
@@ -81,12 +112,13 @@ impl Refined {
             cross += *color * 0.125;
             spread.add(levels(*color), *signature);
         }
-        Self { cross, sum: Rgb::ZERO, points: 0, spread, quarters: Quarters::default() }
+        Self { cross, sum: Rgb::ZERO, points: 0, stage, spread, quarters: Quarters::default() }
     }
 
-    /// Announces that the samples up to number `to` come next.
-    pub fn begin(&mut self, to: u32) {
-        self.quarters.begin(self.points, to);
+    /// Announces that the samples of a stage come next.
+    pub fn begin(&mut self, stage: Stage) {
+        self.quarters.begin(self.points, stage.points);
+        self.stage = stage;
     }
 
     /// Takes in the next sample of the pixel's sequence.
@@ -113,25 +145,19 @@ impl Refined {
         (self.sum + self.cross * weight) / (self.points as f32 + weight)
     }
 
-    /// The colour's squared error, rather too large than too small; `contrast` and `busy` are those of the pixel's
-    /// [`Look`](super::estimate::Look), zero unless suspect.
-    pub fn error(&self, contrast: f32, busy: f32) -> f32 {
-        let seen = self.spread.error(sequence_share(self.points), BUSY * busy);
-        let seen = if self.points >= 8 { seen.max(self.quartered()) } else { seen };
-        self.with_unseen(seen, contrast, busy)
-    }
-
-    /// The colour's squared error as it is on average, for sums over many pixels: from what the quarters of the samples differ by,
-    /// which knows nothing of what they met.
-    pub fn expected_error(&self, contrast: f32, busy: f32) -> f32 {
+    /// The colour's squared error: rather too large than too small, for this pixel; and as it is on average, for sums over many.
+    /// `contrast` and `busy` are those of the pixel's [`Look`](super::estimate::Look), zero unless suspect.
+    ///
+    /// From 8 samples on the second comes from what the quarters of the samples differ by, which knows nothing of what they met.
+    pub fn errors(&self, contrast: f32, busy: f32) -> (f32, f32) {
+        let seen = self.spread.error(self.stage.share, BUSY * busy);
         if self.points < 8 {
-            return self.error(contrast, busy);
+            let error = self.with_unseen(seen, contrast, busy);
+            return (error, error);
         }
-        self.with_unseen(self.quartered(), contrast, busy)
-    }
-
-    fn quartered(&self) -> f32 {
-        quarters_share(self.points) * self.quarters.variance()
+        let quartered = self.stage.quarters * self.quarters.variance();
+        let error = |seen: f32| self.with_unseen(seen, contrast, busy);
+        (error(seen.max(quartered)), error(quartered))
     }
 
     /// The error with that of what may hide between the samples: little if they all met the same; much if they met different things
@@ -141,20 +167,8 @@ impl Refined {
         if self.spread.kinds() > 1 {
             return seen.max(hidden * contrast);
         }
-        seen + sequence_unseen(self.points).max(busy * hidden) * contrast
+        seen + self.stage.unseen.max(busy * hidden) * contrast
     }
-}
-
-/// The numbers of samples of the sequence that a pixel stops at, for at most `most` rays through a pixel: centre and a
-/// corner of its own (others belong to neighbours) and 4, 8, 16, ... samples.
-pub fn stages(most: u32) -> Vec<u32> {
-    let most = most.saturating_sub(2);
-    let powers = (2..31).map(|k| 1_u32 << k);
-    let mut stages: Vec<u32> = powers.take_while(|points| *points < most).collect();
-    if most >= 2 {
-        stages.push(most);
-    }
-    stages
 }
 
 #[cfg(test)]
@@ -162,11 +176,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn stages_are_powers_of_two_up_to_the_last() {
-        assert_eq!(stages(64), [4, 8, 16, 32, 62]);
-        assert_eq!(stages(18), [4, 8, 16]);
-        assert_eq!(stages(10), [4, 8]);
-        assert_eq!(stages(4), [2]);
+    fn stages_are_corners_and_powers_of_two_up_to_the_last() {
+        let points = |most| stages(most).iter().map(|stage| stage.points).collect::<Vec<u32>>();
+        assert_eq!(points(64), [0, 4, 8, 16, 32, 62]);
+        assert_eq!(points(18), [0, 4, 8, 16]);
+        assert_eq!(points(10), [0, 4, 8]);
+        assert_eq!(points(4), [0, 2]);
         assert!([0, 1, 2, 3].iter().all(|&most| stages(most).is_empty()));
     }
 }

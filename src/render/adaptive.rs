@@ -3,7 +3,7 @@
 //! What becomes of a pixel depends on the samples within one pixel around it, and on nothing that other pixels decide.
 
 use std::sync::{
-    Mutex, PoisonError,
+    Mutex, MutexGuard, PoisonError,
     atomic::{AtomicU64, Ordering},
 };
 
@@ -14,14 +14,17 @@ use super::{
     crew::{Crew, Sampler, in_turn, trace_centers},
     goal::Demand,
     look::{Window, corrected, skips_cells},
+    outlook::{Outlook, outlooks, tile_of},
     plane::{Area, Plane},
     round::{
-        Pixel, Round, Threshold, add_rays, corner_rays, is_above, is_disputed, is_picked,
-        wants_corners,
+        Pixel, Round, Threshold, add_rays, is_above, is_disputed, is_picked, next_rays, wants_next,
     },
 };
 use crate::{
-    aa::{Sample, refined::stages},
+    aa::{
+        Sample,
+        refined::{Stage, stages},
+    },
     color::Rgb,
 };
 
@@ -34,15 +37,27 @@ pub(super) struct Adaptive {
     area: Area,
     /// Pixels in a row of the whole picture.
     width: u32,
-    stages: Vec<u32>,
+    /// Of a pixel after its centre.
+    stages: Vec<Stage>,
     centers: Plane<Sample>,
     /// Corners of pixels; those not traced have no rays.
     corners: Plane<Sample>,
+    known: Known,
+    /// Rays of all kinds so far.
+    spent: AtomicU64,
+}
+
+/// What is known of the pixels of the area.
+struct Known {
     pixels: Plane<Pixel>,
     colors: Plane<Rgb>,
     samples: Plane<u32>,
-    /// Rays of all kinds so far.
-    spent: AtomicU64,
+    /// By tile.
+    outlooks: Plane<Outlook>,
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Adaptive {
@@ -55,8 +70,13 @@ impl Adaptive {
     ) -> Self {
         let centers = trace_centers(crew, &area.grown(1));
         let spent = centers.values().iter().map(|sample| u64::from(sample.rays)).sum();
-        let colors = Mutex::new(Plane::new(*area, Rgb::ZERO));
-        let pixels = Mutex::new(Plane::new(*area, Pixel::default()));
+        let stages = stages(most);
+        let known = Mutex::new(Known {
+            pixels: Plane::new(*area, Pixel::default()),
+            colors: Plane::new(*area, Rgb::ZERO),
+            samples: Plane::new(*area, 1),
+            outlooks: outlooks(area),
+        });
         let has_thin = (crew.new_sampler)().has_thin();
         crew.run(
             area,
@@ -89,19 +109,21 @@ impl Adaptive {
                         (pixel, color)
                     })
                     .unzip();
-                pixels.lock().unwrap_or_else(PoisonError::into_inner).put(tile, own_pixels);
-                colors.lock().unwrap_or_else(PoisonError::into_inner).put(tile, own_colors);
+                let outlook = Outlook::of(tile, &own_pixels, &stages, &centers);
+                let mut known = lock(&known);
+                known.pixels.put(tile, own_pixels);
+                known.colors.put(tile, own_colors);
+                let (column, row) = tile_of(area, tile.x0, tile.y0);
+                *known.outlooks.at_mut(column, row) = outlook;
             },
         );
         Self {
             area: *area,
             width,
-            stages: stages(most),
+            stages,
             centers,
             corners: Plane::new(area.corners(), Sample::default()),
-            pixels: pixels.into_inner().unwrap_or_else(PoisonError::into_inner),
-            colors: colors.into_inner().unwrap_or_else(PoisonError::into_inner),
-            samples: Plane::new(*area, 1),
+            known: known.into_inner().unwrap_or_else(PoisonError::into_inner),
             spent: AtomicU64::new(spent),
         }
     }
@@ -117,53 +139,52 @@ impl Adaptive {
         stop: impl Fn() -> bool + Sync,
     ) {
         self.trace_corners(crew, threshold, &stop);
-        let spent = &self.spent;
-        let (pixels, colors, samples) = (
-            Mutex::new(&mut self.pixels),
-            Mutex::new(&mut self.colors),
-            Mutex::new(&mut self.samples),
-        );
+        let (area, centers, spent) = (&self.area, &self.centers, &self.spent);
+        let known = Mutex::new(&mut self.known);
         let round = Round {
-            area: &self.area,
+            area,
             width: self.width,
             stages: &self.stages,
-            centers: &self.centers,
+            centers,
             corners: &self.corners,
             threshold,
             stop: &stop,
         };
-        crew.run(&self.area, counted, &stop, |sampler, scratch, tile| {
-            let mut own = pixels.lock().unwrap_or_else(PoisonError::into_inner).take(tile);
+        crew.run(area, counted, &stop, |sampler, scratch, tile| {
+            let (column, row) = tile_of(area, tile.x0, tile.y0);
+            let mut own = {
+                let mut known = lock(&known);
+                if !known.outlooks.at(column, row).may_exceed(threshold) {
+                    return;
+                }
+                known.pixels.take(tile)
+            };
             let mut changed = vec![false; own.len()];
             round.cross(tile, &mut own, &mut changed);
-            let mut wanting: Vec<usize> = Vec::new();
-            loop {
-                wanting.clear();
-                let places = in_turn(tile).map(|(x, y)| tile.place_of(x, y));
-                wanting.extend(places.filter(|&index| round.wants(tile, &own[index], index)));
-                if wanting.is_empty() {
-                    break;
-                }
+            let places = in_turn(tile).map(|(x, y)| tile.place_of(x, y));
+            let mut wanting: Vec<usize> =
+                places.filter(|&index| round.wants(tile, &own[index], index)).collect();
+            while !wanting.is_empty() {
                 if !round.give(tile, &wanting, &mut own, &mut changed, (sampler, scratch), spent) {
                     break;
                 }
                 if matches!(threshold, Threshold::PerRayOfSome(..)) {
                     break; // how much was worth it is known for one stage
                 }
+                wanting.retain(|&index| round.wants(tile, &own[index], index));
             }
-            if changed.contains(&true) {
-                let mut colors = colors.lock().unwrap_or_else(PoisonError::into_inner);
-                let mut samples = samples.lock().unwrap_or_else(PoisonError::into_inner);
-                for (index, (x, y)) in tile.pixels().enumerate().filter(|(i, _)| changed[*i]) {
-                    if let Some(refined) = &own[index].refined {
-                        *colors.at_mut(x, y) = refined.color();
-                        // Corners that only neighbours wanted do not count, or it would depend on whether those are rendered.
-                        let own = !own[index].suspect || is_disputed(&self.centers, x, y);
-                        *samples.at_mut(x, y) = 1 + u32::from(own) + refined.points();
-                    }
+            let outlook = Outlook::of(tile, &own, round.stages, centers);
+            let mut known = lock(&known);
+            for (index, (x, y)) in tile.pixels().enumerate().filter(|(i, _)| changed[*i]) {
+                if let Some(refined) = &own[index].refined {
+                    *known.colors.at_mut(x, y) = refined.color();
+                    // Corners that only neighbours wanted do not count, or it would depend on whether those are rendered.
+                    let own = !own[index].suspect || is_disputed(centers, x, y);
+                    *known.samples.at_mut(x, y) = 1 + u32::from(own) + refined.points();
                 }
             }
-            pixels.lock().unwrap_or_else(PoisonError::into_inner).put(tile, own);
+            known.pixels.put(tile, own);
+            *known.outlooks.at_mut(column, row) = outlook;
         });
     }
 
@@ -178,27 +199,21 @@ impl Adaptive {
             return;
         }
         let traced = Mutex::new(Vec::new());
-        let (pixels, centers, known) = (&self.pixels, &self.centers, &self.corners);
-        crew.run(known.area(), false, stop, |sampler, scratch, tile| {
-            let wants = |x: i64, y: i64, disputed: bool| {
-                pixels.area().contains(x, y) && {
-                    let pixel = pixels.at(x, y);
-                    pixel.stage == 0
-                        && is_picked(threshold, x, y)
-                        && (disputed || !pixel.suspect)
-                        && wants_corners(pixel, centers.at(x, y), threshold)
-                }
-            };
-            let wanted: Vec<(i64, i64)> = in_turn(tile)
-                .filter(|&(x, y)| {
-                    let disputed = is_disputed(centers, x, y);
-                    known.at(x, y).rays == 0
-                        && (wants(x, y, disputed)
-                            || wants(x - 1, y, disputed)
-                            || wants(x, y - 1, disputed)
-                            || wants(x - 1, y - 1, disputed))
-                })
-                .collect();
+        let (area, outlooks) = (&self.area, &self.known.outlooks);
+        // Corners belong to the pixels up and left of them too.
+        let may_exceed = |x: i64, y: i64| {
+            let (column, row) = tile_of(area, x.max(area.x0), y.max(area.y0));
+            outlooks.nearest(column, row).may_exceed(threshold)
+        };
+        crew.run(self.corners.area(), false, stop, |sampler, scratch, tile| {
+            let (left, top) = (tile.x0 - 1, tile.y0 - 1);
+            if ![(tile.x0, tile.y0), (left, tile.y0), (tile.x0, top), (left, top)]
+                .iter()
+                .any(|&(x, y)| may_exceed(x, y))
+            {
+                return;
+            }
+            let wanted = self.wanted_corners(tile, threshold);
             if wanted.is_empty() {
                 return;
             }
@@ -206,8 +221,8 @@ impl Adaptive {
             scratch.samples.clear();
             scratch.places.extend(wanted.iter().map(|&(x, y)| DVec2::new(x as f64, y as f64)));
             sampler.sample(&scratch.places, &mut scratch.samples);
-            let mut traced = traced.lock().unwrap_or_else(PoisonError::into_inner);
             add_rays(&self.spent, &scratch.samples);
+            let mut traced = lock(&traced);
             traced.extend(wanted.iter().zip(&scratch.samples).map(|(&(x, y), s)| (x, y, *s)));
         });
         for (x, y, sample) in traced.into_inner().unwrap_or_else(PoisonError::into_inner) {
@@ -215,9 +230,42 @@ impl Adaptive {
         }
     }
 
+    /// The corners in a tile that pixels above the threshold will look at, and that are not traced yet.
+    fn wanted_corners(&self, tile: &Area, threshold: Threshold) -> Vec<(i64, i64)> {
+        let (area, centers) = (&self.area, &self.centers);
+        let around = Area {
+            x0: (tile.x0 - 1).max(area.x0),
+            y0: (tile.y0 - 1).max(area.y0),
+            x1: tile.x1.min(area.x1),
+            y1: tile.y1.min(area.y1),
+        };
+        let mut is_wanted = vec![false; tile.len()];
+        for (x, y) in around.pixels() {
+            let pixel = self.known.pixels.at(x, y);
+            if pixel.stage > 0
+                || !wants_next(&self.stages, threshold, pixel, centers.at(x, y))
+                || !is_picked(threshold, x, y)
+            {
+                continue;
+            }
+            for (x, y) in [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)] {
+                if tile.contains(x, y)
+                    && self.corners.at(x, y).rays == 0
+                    && (!pixel.suspect || is_disputed(centers, x, y))
+                {
+                    is_wanted[tile.place_of(x, y)] = true;
+                }
+            }
+        }
+        if !is_wanted.contains(&true) {
+            return Vec::new();
+        }
+        in_turn(tile).filter(|&(x, y)| is_wanted[tile.place_of(x, y)]).collect()
+    }
+
     /// The estimated error: root mean square of all channels, in levels of 255.
     pub(super) fn estimated_rmse(&self) -> f64 {
-        let sum: f64 = self.pixels.values().iter().map(|pixel| f64::from(pixel.expected)).sum();
+        let sum: f64 = self.known.outlooks.values().iter().map(|tile| tile.expected).sum();
         (sum / self.area.len().max(1) as f64).sqrt()
     }
 
@@ -226,51 +274,39 @@ impl Adaptive {
         self.spent.load(Ordering::Relaxed)
     }
 
-    /// The last stage that there is.
-    fn last_stage(&self) -> usize {
-        if self.stages.is_empty() { 0 } else { self.stages.len() + 1 }
-    }
-
     /// Whether a pixel that is off may get more rays.
     pub(super) fn can_improve(&self) -> bool {
-        let last = self.last_stage();
-        self.pixels.values().iter().any(|p| p.error > 0.0 && usize::from(p.stage) < last)
+        self.known.outlooks.values().iter().any(Outlook::can_improve)
     }
 
     /// How many pixels got all the rays they may get, and have a squared error of at least `limit`.
     pub(super) fn unsettled(&self, limit: f32) -> usize {
-        let last = self.last_stage();
         let is_unsettled = |p: &&Pixel| {
-            usize::from(p.stage) >= last && is_above(Threshold::Error(limit), p.error, 0.0)
+            usize::from(p.stage) >= self.stages.len()
+                && is_above(Threshold::Error(limit), p.error, 0.0)
         };
-        self.pixels.values().iter().filter(is_unsettled).count()
+        self.known.pixels.values().iter().filter(is_unsettled).count()
     }
 
     /// What the next stages of all pixels are worth, and take.
     pub(super) fn demand(&self) -> Demand {
         let mut demand = Demand::new();
-        for ((x, y), pixel) in self.area.pixels().zip(self.pixels.values()) {
-            let each = self.centers.at(x, y).rays;
-            let rays = match (pixel.stage, &pixel.refined) {
-                (0, _) if !self.stages.is_empty() => corner_rays(pixel) * each as f32,
-                (stage @ 1.., Some(refined)) => match self.stages.get(usize::from(stage) - 1) {
-                    Some(points) => ((points - refined.points()) * each) as f32,
-                    None => continue,
-                },
-                _ => continue,
-            };
-            let points = pixel.refined.as_ref().map_or(0, |refined| refined.points());
-            let worth = if points < pixel.least { f32::MAX } else { pixel.error / rays };
-            demand.add(worth, rays.ceil() as u64);
+        for ((x, y), pixel) in self.area.pixels().zip(self.known.pixels.values()) {
+            if let Some(rays) = next_rays(&self.stages, pixel, self.centers.at(x, y)) {
+                let is_due = pixel.points() < pixel.least;
+                let worth = if is_due { f32::MAX } else { pixel.error / rays };
+                demand.add(worth, rays.ceil() as u64);
+            }
         }
         demand
     }
 
     pub(super) fn into_picture(self) -> Picture {
+        let Known { pixels, colors, samples, .. } = self.known;
         Picture {
-            colors: self.colors.into_values(),
-            samples: self.samples.into_values(),
-            errors: self.pixels.values().iter().map(|pixel| pixel.expected).collect(),
+            colors: colors.into_values(),
+            samples: samples.into_values(),
+            errors: pixels.values().iter().map(|pixel| pixel.expected).collect(),
             outcome: Outcome::default(),
         }
     }

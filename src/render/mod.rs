@@ -5,6 +5,7 @@ mod blocks;
 mod crew;
 mod goal;
 mod look;
+mod outlook;
 mod plain;
 mod plane;
 pub mod refine;

@@ -11,7 +11,7 @@ use super::{
 use crate::{
     aa::{
         Sample,
-        refined::Refined,
+        refined::{Refined, Stage},
         sobol::{Sequence, mix},
     },
     color::Rgb,
@@ -55,6 +55,19 @@ pub(super) struct Pixel {
     pub(super) refined: Option<Box<Refined>>,
 }
 
+impl Pixel {
+    /// The samples of the sequence so far.
+    pub(super) fn points(&self) -> u32 {
+        self.refined.as_ref().map_or(0, |refined| refined.points())
+    }
+
+    /// Takes over the errors after a stage.
+    fn judge(&mut self, refined: &Refined) {
+        (self.error, self.expected) = refined.errors(self.contrast, self.busy);
+        self.stage += 1;
+    }
+}
+
 /// Whether the four centres around a corner saw different things.
 pub(super) fn is_disputed(centers: &Plane<Sample>, x: i64, y: i64) -> bool {
     let signature = centers.at(x, y).signature;
@@ -85,20 +98,33 @@ pub(super) fn add_rays(spent: &AtomicU64, samples: &[Sample]) {
     spent.fetch_add(samples.iter().map(|s| u64::from(s.rays)).sum(), Ordering::Relaxed);
 }
 
-/// Camera rays that the corners of a pixel are taken to cost.
-pub(super) fn corner_rays(pixel: &Pixel) -> f32 {
-    if pixel.suspect { SHARED_CORNERS } else { OWN_CORNERS }
+/// The rays of all kinds that the next of the `stages` of a pixel is taken to cost, if there is one.
+pub(super) fn next_rays(stages: &[Stage], pixel: &Pixel, center: &Sample) -> Option<f32> {
+    let next = stages.get(usize::from(pixel.stage))?;
+    let camera_rays = match pixel.stage {
+        0 if pixel.suspect => SHARED_CORNERS,
+        0 => OWN_CORNERS,
+        _ => (next.points - pixel.points()) as f32,
+    };
+    Some(camera_rays * center.rays as f32)
 }
 
-pub(super) fn wants_corners(pixel: &Pixel, center: &Sample, threshold: Threshold) -> bool {
-    pixel.least > 0 || is_above(threshold, pixel.error, corner_rays(pixel) * center.rays as f32)
+/// Whether a pixel is above the threshold and has a stage to go.
+pub(super) fn wants_next(
+    stages: &[Stage],
+    threshold: Threshold,
+    pixel: &Pixel,
+    center: &Sample,
+) -> bool {
+    next_rays(stages, pixel, center)
+        .is_some_and(|rays| pixel.points() < pixel.least || is_above(threshold, pixel.error, rays))
 }
 
 /// What the pixels of a tile need to know to get their next samples.
 pub(super) struct Round<'a> {
     pub(super) area: &'a Area,
     pub(super) width: u32,
-    pub(super) stages: &'a [u32],
+    pub(super) stages: &'a [Stage],
     pub(super) centers: &'a Plane<Sample>,
     pub(super) corners: &'a Plane<Sample>,
     pub(super) threshold: Threshold,
@@ -108,14 +134,12 @@ pub(super) struct Round<'a> {
 impl Round<'_> {
     /// Takes the corners into the pixels above the threshold that have only their centres.
     pub(super) fn cross(&self, tile: &Area, pixels: &mut [Pixel], changed: &mut [bool]) {
-        if self.stages.is_empty() {
-            return;
-        }
+        let Some(corners) = self.stages.first() else { return };
         for (index, (x, y)) in tile.pixels().enumerate() {
             let (pixel, center) = (&mut pixels[index], self.centers.at(x, y));
             if pixel.stage > 0
                 || !is_picked(self.threshold, x, y)
-                || !wants_corners(pixel, center, self.threshold)
+                || !wants_next(self.stages, self.threshold, pixel, center)
             {
                 continue;
             }
@@ -134,29 +158,19 @@ impl Round<'_> {
             else {
                 continue;
             };
-            let refined = Refined::new(center, &[a, b, c, d]);
-            pixel.error = refined.error(pixel.contrast, pixel.busy);
-            pixel.expected = refined.expected_error(pixel.contrast, pixel.busy);
-            pixel.stage = 1;
+            let refined = Refined::new(*corners, center, &[a, b, c, d]);
+            pixel.judge(&refined);
             pixel.refined = Some(Box::new(refined));
             changed[index] = true;
         }
     }
 
-    /// The samples of the sequence after the pixel's next stage, if there is one.
-    fn next_points(&self, pixel: &Pixel) -> Option<u32> {
-        (pixel.stage > 0).then(|| self.stages.get(usize::from(pixel.stage) - 1).copied()).flatten()
-    }
-
+    /// Whether a pixel with corners wants the samples of its next stage.
     pub(super) fn wants(&self, tile: &Area, pixel: &Pixel, index: usize) -> bool {
-        let (Some(points), Some(refined)) = (self.next_points(pixel), &pixel.refined) else {
-            return false;
-        };
         let (x, y) = tile.pixel_at(index);
-        let rays = (points - refined.points()) * self.centers.at(x, y).rays;
-        is_picked(self.threshold, x, y)
-            && (refined.points() < pixel.least
-                || is_above(self.threshold, pixel.error, rays as f32))
+        pixel.stage > 0
+            && is_picked(self.threshold, x, y)
+            && wants_next(self.stages, self.threshold, pixel, self.centers.at(x, y))
     }
 
     /// Gives the pixels that want them the samples of their next stage; returns whether there was time for all.
@@ -200,21 +214,20 @@ impl Round<'_> {
         let number = y as u64 * u64::from(self.width) + x as u64;
         let sequence = Sequence::of_pixel(number, 0);
         let corner = DVec2::new(x as f64, y as f64);
-        let from = pixel.refined.as_ref().map_or(0, |refined| refined.points());
-        let to = self.next_points(pixel).unwrap_or(from);
+        let from = pixel.points();
+        let to = self.stages.get(usize::from(pixel.stage)).map_or(from, |stage| stage.points);
         places.extend((from..to).map(|point| corner + sequence.place(point)));
     }
 
     fn advance<'s>(&self, pixel: &mut Pixel, answers: &mut impl Iterator<Item = &'s Sample>) {
-        let points = self.next_points(pixel);
-        if let (Some(points), Some(refined)) = (points, &mut pixel.refined) {
-            refined.begin(points);
-            for sample in answers.take((points - refined.points()) as usize) {
+        let next = self.stages.get(usize::from(pixel.stage));
+        if let (Some(stage), Some(mut refined)) = (next, pixel.refined.take()) {
+            refined.begin(*stage);
+            for sample in answers.take((stage.points - refined.points()) as usize) {
                 refined.add(sample);
             }
-            pixel.error = refined.error(pixel.contrast, pixel.busy);
-            pixel.expected = refined.expected_error(pixel.contrast, pixel.busy);
-            pixel.stage += 1;
+            pixel.judge(&refined);
+            pixel.refined = Some(refined);
         }
     }
 }
