@@ -5,14 +5,18 @@
 
 Needs cargo, and for the peers Debian's packages povray, libembree-dev and g++ and Python's numpy; a peer that is not there is left
 out and said. Every measurement is a process of its own; round 1 measures every task once, then comes round 2, so that a change
-of the machine's mood hits all alike. The tables give medians, and ratios of medians. Written: peers.csv, peers.md.
+of the machine's mood hits all alike. The tables give medians, and ratios of medians. Written: peers.csv, peers.md, and frames.svg, which
+plots the trace times of the sphere scenes for the largest of the numbers of threads.
 """
 import argparse, csv, json, os, re, shutil, statistics, subprocess, sys, tempfile
+
+import chart
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
 TEXTURES = os.path.join(ROOT, 'textures')
 EMBREE = 'libembree3.so.3'
+ADAPTIVE = 'adaptive:16'  # about the error of grid:2 on the sphere scenes
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 parser.add_argument('--rounds', type=int, default=5)
@@ -33,9 +37,9 @@ def run(command, **kw):
     return done.stdout.replace('\r', '\n')
 
 
-def ours(work, scene, rays, threads):
+def ours(work, scene, mode, threads):
     command = [os.path.join(ROOT, 'target/release/whitted'), 'render', scene[0], '--threads', str(threads), '--quiet', '--stats', '-',
-               '--aa', {1: 'none', 4: 'grid:2'}[rays], '--output', os.path.join(work, 'ours.png'), *scene[1:]]
+               '--aa', mode, '--output', os.path.join(work, 'ours.png'), *scene[1:]]
 
     def measure():
         text = run(command)
@@ -98,14 +102,18 @@ def prepare(work):
             print(f'{name} is left out: not installed', file=sys.stderr)
     tasks = []
     for threads in options.threads:
-        for rays in (1, 4):
+        for rays, mode in ((1, 'none'), (4, 'grid:2')):
             group = f'assignment, {rays} rays per pixel, {threads} threads'
-            tasks.append((group, 'whitted', ours(work, ['assignment'], rays, threads)))
+            tasks.append((group, 'whitted', ours(work, ['assignment'], mode, threads)))
             if have_povray:
                 tasks.append((group, 'povray', povray(work, os.path.join(HERE, 'assignment.pov'), rays, threads)))
             for count in options.objects:
                 group = f'spheres {count}, {rays} rays per pixel, {threads} threads'
-                tasks.append((group, 'whitted', ours(work, ['spheres', '--objects', str(int(float(count)))], rays, threads)))
+                spheres = ['spheres', '--objects', str(int(float(count)))]
+                tasks.append((group, 'whitted', ours(work, spheres, mode, threads)))
+                if rays == 4:
+                    group_of_adaptive = f'spheres {count}, {ADAPTIVE}, {threads} threads'
+                    tasks.append((group_of_adaptive, 'whitted', ours(work, spheres, ADAPTIVE, threads)))
                 if have_povray:
                     scene = os.path.join(work, f'{count}.pov')
                     tasks.append((group, 'povray', povray(work, scene, rays, threads)))
@@ -145,6 +153,15 @@ def write(rows):
                 a, b = median[group, program, measure], median.get((group, 'embree', theirs))
                 ratio = '-' if not b else f'{a / b:.2f}' if 'Mrays' in measure else f'{b / a:.2f}'
                 f.write(f'| {group.removeprefix("queries ")} | {measure} | {a:.4g} | ' + (f'{b:.4g}' if b else '-') + f' | {ratio} |\n')
+    frames = {}
+    for (group, program, measure), value in median.items():
+        found = re.fullmatch(rf'spheres (\S+), (.*), {max(options.threads)} threads', group)
+        if found and measure == 'trace':
+            name = {'whitted': 'whitted', 'povray': 'POV-Ray'}[program]
+            frames.setdefault(f'{name}, {found[2]}', []).append((float(found[1]), value))
+    if frames:
+        chart.write(os.path.join(options.out, 'frames.svg'), f'Frame time of the sphere scenes, 600 x 600, {max(options.threads)} threads',
+                    'spheres', 'seconds', {name: sorted(points) for name, points in frames.items()})
 
 
 def main():
