@@ -7,11 +7,11 @@ use std::time::{Duration, Instant};
 use anyhow::Context;
 use whitted::film::heatmap::{Scale, write_heatmap, write_rgb8};
 use whitted::film::{OutputFile, WholeFile};
-use whitted::scene::{Scene, SceneError, load_builtin_of};
+use whitted::scene::{self, LoadOptions, Loaded, SceneError};
 use whitted::study::{Plan, Portrait, Step, Study, charts, report};
 
 use super::args::StudyArgs;
-use super::failure::Failure;
+use super::failure::{Failure, warn};
 use super::streams;
 
 /// The pause between two lines about how far it is.
@@ -20,7 +20,8 @@ const INTERVAL: Duration = Duration::from_secs(2);
 pub(crate) fn run(args: &StudyArgs) -> Result<(), Failure> {
     let plan = plan(args);
     for name in &plan.scenes {
-        load(name)?; // a mistyped name is better found now
+        // A mistyped name is better found now.
+        warn(&load(name)?.warnings, false, args.quiet)?;
     }
     let references = args.output.join("references");
     fs::create_dir_all(&references)
@@ -28,7 +29,9 @@ pub(crate) fn run(args: &StudyArgs) -> Result<(), Failure> {
     let table = file(&args.output, "study.csv")?;
 
     let progress = Lines::new(args.quiet);
-    let study = whitted::study::run(&plan, &load, &references, &|step| progress.report(step))?;
+    let study = whitted::study::run(&plan, &|name| Ok(load(name)?.scene), &references, &|step| {
+        progress.report(step);
+    })?;
     table.commit(|writer| writer.write_all(report::csv(&study.rows).as_bytes()))?;
     write(args, &study)?;
     if !args.quiet {
@@ -53,15 +56,11 @@ fn plan(args: &StudyArgs) -> Plan {
     plan
 }
 
-/// A built-in scene; those with any number of objects have it behind a colon.
-fn load(name: &str) -> Result<Scene, SceneError> {
-    match name.split_once(':') {
-        Some((scene, objects)) => match objects.parse() {
-            Ok(objects) => load_builtin_of(scene, Some(objects)),
-            Err(_) => load_builtin_of(name, None),
-        },
-        None => load_builtin_of(name, None),
-    }
+/// A built-in scene or a file; a generated scene may have its number of objects behind a colon.
+fn load(name: &str) -> Result<Loaded, SceneError> {
+    let numbered = name.rsplit_once(':').and_then(|(scene, n)| Some((scene, n.parse().ok()?)));
+    let (name, objects) = numbered.map_or((name, None), |(scene, n)| (scene, Some(n)));
+    scene::load(name, &LoadOptions { objects, ..LoadOptions::default() })
 }
 
 fn file(folder: &Path, name: &str) -> Result<WholeFile, Failure> {
@@ -138,9 +137,15 @@ mod tests {
 
     #[test]
     fn scenes_may_have_a_number_of_objects() {
-        assert_eq!(load("spheres:7").expect("a scene").primitive_count(), 8);
+        assert_eq!(load("spheres:7").expect("a scene").scene.primitive_count(), 8);
         for name in ["nowhere", "spheres:many", "assignment:3", "spheres:0"] {
             assert!(load(name).is_err(), "{name}");
         }
+    }
+
+    #[test]
+    fn scenes_may_be_files() {
+        let model = concat!(env!("CARGO_MANIFEST_DIR"), "/models/crate/crate.obj");
+        assert!(load(model).expect("a scene").scene.primitive_count() > 10);
     }
 }

@@ -50,7 +50,7 @@ impl Reference {
         Ok(Self { pixels })
     }
 
-    /// The file: its name tells scene, size, depth, rays and the program's version apart.
+    /// The file: its name tells scene, size, depth, rays and the program's version apart, whatever the scene is called.
     fn path(
         scene: &Scene,
         name: &str,
@@ -60,9 +60,9 @@ impl Reference {
     ) -> PathBuf {
         let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
         let name: String = name.chars().map(plain).collect();
-        let (primitives, depth) = (scene.primitive_count(), scene.depth());
+        let (hash, depth) = (&scene.hash()[..16], scene.depth());
         let version = env!("CARGO_PKG_VERSION");
-        folder.join(format!("{name}-{primitives}-{width}x{height}-{depth}-{rays}-{version}.f32"))
+        folder.join(format!("{name}-{hash}-{width}x{height}-{depth}-{rays}-{version}.f32"))
     }
 
     /// What is in the file, if it has the length that it should.

@@ -177,7 +177,7 @@ Examples:
   whitted study --quick                   less than half a minute
   whitted study assignment -o results --repeats 9")]
 pub(crate) struct StudyArgs {
-    /// Built-in scenes to study [default: assignment, and spheres of several numbers]
+    /// Scenes to study: built-in ones, spheres:N, or files [default: assignment and spheres:10000]
     pub(crate) scenes: Vec<String>,
 
     /// Folder for study.csv, study.json, study.md, index.html, plots and pictures
