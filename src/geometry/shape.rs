@@ -291,6 +291,7 @@ impl Shape {
     /// The ray from the very point that `ray` leaves, and where it crosses this shape in place of `hit`.
     ///
     /// Nowhere, if the step aside that `ray` starts with makes the difference between hit and miss.
+    #[inline(always)]
     fn met_directly(&self, ray: &Ray, from: &Departure, hit: &Hit) -> (Ray, Option<f64>) {
         let direct = Ray::new(from.point, ray.dir);
         let near = |a: &Crossing, b: &Crossing| (a.t - hit.t).abs().total_cmp(&(b.t - hit.t).abs());

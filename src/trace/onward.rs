@@ -27,6 +27,7 @@ pub(super) fn transmitted(
 
 /// The mirror direction of `dir` by the shading normal. Where that points below the surface, as it may at a grazing view
 /// of a coarse mesh, it is mirrored up again.
+#[inline(always)]
 pub(super) fn mirrored(dir: DVec3, surface: &Surface, inside: bool) -> DVec3 {
     let side = if inside { -1.0 } else { 1.0 };
     let onward = reflect(dir, surface.shading * side);
@@ -38,6 +39,7 @@ pub(super) fn mirrored(dir: DVec3, surface: &Surface, inside: bool) -> DVec3 {
 
 /// The refracted direction by the shading normal, or by the surface's own where the other faces away from the ray or
 /// sends it back to its side; `None` if it is totally reflected.
+#[inline(always)]
 fn refracted(dir: DVec3, surface: &Surface, inside: bool, from: f64, to: f64) -> Option<DVec3> {
     let side = if inside { -1.0 } else { 1.0 };
     let (normal, shading) = (surface.normal * side, surface.shading * side);
