@@ -15,7 +15,7 @@ pub(crate) enum Preview {
     /// In a terminal.
     Terminal(Terminal),
     /// In a window.
-    Window(PreviewWindow),
+    Window(Box<PreviewWindow>),
 }
 
 impl Preview {
@@ -25,7 +25,7 @@ impl Preview {
             return Self::None;
         }
         if let Some(window) = PreviewWindow::open() {
-            return Self::Window(window);
+            return Self::Window(Box::new(window));
         }
         if let Some(terminal) = Terminal::on_stderr() {
             return Self::Terminal(terminal);

@@ -21,7 +21,7 @@ pub(super) struct Pane {
     surface: Surface<OwnedDisplayHandle, Rc<Window>>,
 }
 
-fn failed(error: softbuffer::SoftBufferError) -> anyhow::Error {
+fn failed(error: &softbuffer::SoftBufferError) -> anyhow::Error {
     anyhow!("the window cannot be drawn in: {error}")
 }
 
@@ -36,8 +36,9 @@ impl Pane {
             .with_inner_size(PhysicalSize::new(width, height));
         let window =
             Rc::new(events.create_window(attributes).context("the window cannot be opened")?);
-        let context = Context::new(events.owned_display_handle()).map_err(failed)?;
-        let surface = Surface::new(&context, Rc::clone(&window)).map_err(failed)?;
+        let context =
+            Context::new(events.owned_display_handle()).map_err(|error| failed(&error))?;
+        let surface = Surface::new(&context, Rc::clone(&window)).map_err(|error| failed(&error))?;
         Ok(Self { window, surface })
     }
 
@@ -66,8 +67,8 @@ impl Pane {
         let (Some(columns), Some(rows)) = (NonZeroU32::new(width), NonZeroU32::new(height)) else {
             return Ok(());
         };
-        self.surface.resize(columns, rows).map_err(failed)?;
-        let mut buffer = self.surface.buffer_mut().map_err(failed)?;
+        self.surface.resize(columns, rows).map_err(|error| failed(&error))?;
+        let mut buffer = self.surface.buffer_mut().map_err(|error| failed(&error))?;
         for (pixel, rgb) in buffer.iter_mut().zip(bytes.chunks_exact(3)) {
             *pixel = u32::from_be_bytes([0, rgb[0], rgb[1], rgb[2]]);
         }
@@ -76,7 +77,7 @@ impl Pane {
         Pixels { width, height, values: &mut buffer }.write(lines, dot);
         self.window.set_title(&format!("whitted: {title}"));
         self.window.pre_present_notify();
-        buffer.present().map_err(failed)?;
+        buffer.present().map_err(|error| failed(&error))?;
         Ok(())
     }
 }
