@@ -6,13 +6,18 @@ use std::{
         Mutex, MutexGuard, PoisonError,
         atomic::{AtomicBool, Ordering},
     },
+    time::{Duration, Instant},
 };
 
 use super::{Checkpoint, CheckpointError, record::Record};
 use crate::{
+    color::Rgb,
     film::{FileError, Film, Label, Tile},
     render::{Account, Block, Effort, Outcome, Progress, Rendering, Sink},
 };
+
+/// The least time between two looks at a picture towards a goal, which are copies of all of it.
+const BETWEEN_LOOKS: Duration = Duration::from_millis(250);
 
 /// A picture in the making.
 pub struct Job<'a> {
@@ -30,6 +35,8 @@ struct State {
     /// Finished blocks that are not in the checkpoint yet.
     unsaved: Vec<usize>,
     outcome: Outcome,
+    /// When a picture towards a goal was looked at last.
+    looked: Instant,
 }
 
 impl<'a> Job<'a> {
@@ -47,6 +54,7 @@ impl<'a> Job<'a> {
             accounts: vec![None; places.len()],
             unsaved: Vec::new(),
             outcome: Outcome::default(),
+            looked: Instant::now(),
         };
         Self { label, places, stop, progress, state: Mutex::new(state) }
     }
@@ -128,18 +136,21 @@ impl<'a> Job<'a> {
         self.state().accounts.iter().all(Option::is_some)
     }
 
-    /// The share of the picture's pixels that are finished, from 0 to 1.
+    /// The share of the picture's pixels that are rendered, from 0 to 1.
     pub fn share_done(&self) -> f64 {
         let missing = self.missing() as f64;
         let part = self.label.place();
         1.0 - missing / (f64::from(part.width()) * f64::from(part.height()))
     }
 
-    /// How many pixels are not finished.
+    /// How many pixels are not rendered.
     pub fn missing(&self) -> u64 {
-        let state = self.state();
-        let open = self.places.iter().zip(&state.accounts).filter(|(_, account)| account.is_none());
-        open.map(|(place, _)| u64::from(place.width()) * u64::from(place.height())).sum()
+        self.state().film.missing()
+    }
+
+    /// How it ended, as far as the last block knows.
+    pub fn outcome(&self) -> Outcome {
+        self.state().outcome
     }
 
     /// What the picture's file says of itself, as it is now.
@@ -183,9 +194,19 @@ impl Sink for Job<'_> {
         let mut state = self.state();
         let place = block.place.minus(&self.label.place());
         state.film.blit(&place, &block.colors, &block.samples);
-        state.accounts[block.number] = Some(block.account);
-        state.unsaved.push(block.number);
         state.outcome = block.outcome;
+        if !block.samples.contains(&0) {
+            state.accounts[block.number] = Some(block.account);
+            state.unsaved.push(block.number);
+        }
+    }
+
+    fn show(&self, place: &Tile, colors: &[Rgb], samples: &[u32]) {
+        let mut state = self.state();
+        if state.looked.elapsed() >= BETWEEN_LOOKS {
+            state.film.blit(&place.minus(&self.label.place()), colors, samples);
+            state.looked = Instant::now();
+        }
     }
 
     fn is_stopped(&self) -> bool {

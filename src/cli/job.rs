@@ -1,31 +1,29 @@
 //! One picture from its first block to its file: checkpoints on the way, and what is left when it is stopped.
 
 use std::{
-    path::{Path, PathBuf},
-    sync::{
-        Condvar, Mutex, PoisonError,
-        atomic::{AtomicBool, Ordering},
-    },
+    panic::resume_unwind,
+    path::Path,
     time::{Duration, Instant},
 };
 
 use whitted::checkpoint::{Checkpoint, CheckpointError, Job};
 use whitted::film::Label;
-use whitted::render::{Effort, Goal, RenderError, RenderOptions, Rendering, blocks, render_blocks};
+use whitted::render::{
+    Effort, Goal, Progress, RenderError, RenderOptions, Rendering, blocks, render_blocks,
+};
 use whitted::scene::Scene;
 
 use super::args::{ProgressMode, RenderArgs};
 use super::failure::Failure;
-use super::preview::{self, Preview};
+use super::preview::Preview;
 use super::progress::Reporter;
 use super::signals::Signals;
 use super::streams;
 use super::target::Picture;
+use super::watch::{Course, Kept, Watcher};
 
-/// How often a signal is looked for.
-const WATCH: Duration = Duration::from_millis(100);
-/// How often the preview is drawn.
-const PREVIEW: Duration = Duration::from_millis(300);
+/// What is said of a picture towards a goal that was interrupted.
+pub(crate) const NO_CHECKPOINT: &str = "nothing goes on from it: --max-error and --time-limit keep no checkpoint, --aa adaptive:ERROR does";
 
 /// What is rendered, and where to.
 pub(crate) struct Order<'a> {
@@ -41,28 +39,23 @@ pub(crate) struct Finished {
     pub(crate) rendering: Rendering,
     /// The time that writing took, in seconds.
     pub(crate) write: f64,
-}
-
-/// The checkpoint of a picture.
-struct Kept {
-    path: Option<PathBuf>,
-    checkpoint: Option<Checkpoint>,
+    /// The signal that ended it before its goal.
+    pub(crate) interrupted: Option<u8>,
 }
 
 /// Renders a picture and writes it; if it is stopped, writes what there is of it, and fails with the signal.
-pub(crate) fn run(order: &Order, args: &RenderArgs) -> Result<Finished, Failure> {
+pub(crate) fn run(
+    order: &Order,
+    args: &RenderArgs,
+    preview: &mut Preview,
+) -> Result<Finished, Failure> {
     let Order { options, label, picture, signals, .. } = order;
-    let mut preview = args.preview.then(Preview::on_terminal).flatten();
-    if args.preview && preview.is_none() {
-        note(
-            args,
-            "warning: --preview: standard error is no terminal that shows pictures; rendering without",
-        );
-    }
     let mode = match args.progress {
         _ if args.quiet => ProgressMode::None,
         // The line below the picture tells it.
-        ProgressMode::Auto | ProgressMode::Bar | ProgressMode::Plain if preview.is_some() => {
+        ProgressMode::Auto | ProgressMode::Bar | ProgressMode::Plain
+            if matches!(preview, Preview::Terminal(_)) =>
+        {
             ProgressMode::None
         }
         mode => mode,
@@ -71,7 +64,11 @@ pub(crate) fn run(order: &Order, args: &RenderArgs) -> Result<Finished, Failure>
     let reporter = Reporter::new(mode, pixels);
     let places = blocks(&label.place(), options.aa, options.goal);
     let stop = signals.defer();
-    let report = |progress| reporter.report(&progress);
+    let course = Course::default();
+    let report = |progress: Progress| {
+        course.report(progress);
+        reporter.report(&progress);
+    };
     let job = Job::new((*label).clone(), places, stop, &report);
     let path = picture.path().filter(|_| options.goal == Goal::Mode).map(Checkpoint::path_for);
     let mut kept = Kept { path, checkpoint: None };
@@ -79,15 +76,27 @@ pub(crate) fn run(order: &Order, args: &RenderArgs) -> Result<Finished, Failure>
         kept.checkpoint = find(&job, path, args)?;
     }
     reporter.begin(job.share_done());
-    let effort = render(order, args, &job, &mut kept, stop, preview.as_mut())?;
+    let watcher = Watcher {
+        job: &job,
+        course: &course,
+        stop,
+        interval: Duration::from_secs_f64(args.checkpoint),
+        stopping: match options.goal {
+            Goal::Mode => "stopping: blocks in work are finished; once more stops at once",
+            _ => "stopping: the picture is written as it is; once more stops at once",
+        },
+        note: &|line| note(args, line),
+    };
+    let effort = render(order, &job, &watcher, &mut kept, preview)?;
     reporter.end();
     if !job.is_complete() {
         return Err(leave(order, &job, kept));
     }
     let writing = Instant::now();
-    finish(order, &job, kept)?;
+    let interrupted = signals.received().filter(|_| job.outcome().cut);
+    finish(order, &job, kept, interrupted.is_some())?;
     let write = writing.elapsed().as_secs_f64();
-    Ok(Finished { rendering: job.into_rendering(&effort), write })
+    Ok(Finished { rendering: job.into_rendering(&effort), write, interrupted })
 }
 
 /// Writes a line that is not an error, unless nobody or only a program reads it.
@@ -131,64 +140,31 @@ fn find(job: &Job, path: &Path, args: &RenderArgs) -> Result<Option<Checkpoint>,
     }
 }
 
-/// Draws what there is of the picture.
-fn draw(job: &Job, preview: &mut Preview) {
-    let line = format!("{:.0} %", 100.0 * job.share_done());
-    let frame = job.with_film(|film| preview.frame(film, &line));
-    preview::show(&frame);
-}
-
-/// Renders what the job has not, while another thread writes checkpoints and draws the preview.
+/// Renders what the job has not, while others look after it. A window has to be on the thread that the program began with.
 fn render(
     order: &Order,
-    args: &RenderArgs,
     job: &Job,
+    watcher: &Watcher,
     kept: &mut Kept,
-    stop: &AtomicBool,
-    mut preview: Option<&mut Preview>,
+    preview: &mut Preview,
 ) -> Result<Effort, RenderError> {
-    let (ended, wake) = (Mutex::new(false), Condvar::new());
-    std::thread::scope(|scope| {
-        scope.spawn(|| {
-            let interval = Duration::from_secs_f64(args.checkpoint);
-            let (mut last, mut has_told, mut has_failed) = (Instant::now(), false, false);
-            let mut drawn = Instant::now();
-            let mut guard = ended.lock().unwrap_or_else(PoisonError::into_inner);
-            while !*guard {
-                if let Some(preview) = preview.as_deref_mut()
-                    && drawn.elapsed() >= PREVIEW
-                {
-                    draw(job, preview);
-                    drawn = Instant::now();
-                }
-                guard = wake.wait_timeout(guard, WATCH).unwrap_or_else(PoisonError::into_inner).0;
-                if stop.load(Ordering::Relaxed) && !has_told && !*guard {
-                    has_told = true;
-                    note(args, "stopping: blocks in work are finished; once more stops at once");
-                }
-                if *guard || last.elapsed() < interval {
-                    continue;
-                }
-                let Kept { path: Some(path), checkpoint } = &mut *kept else { continue };
-                drop(guard);
-                let saved = job.save(checkpoint, path);
-                last = Instant::now();
-                if let Err(error) = &saved
-                    && !has_failed
-                {
-                    note(args, &format!("warning: no checkpoint for now: {error}"));
-                }
-                has_failed = saved.is_err();
-                guard = ended.lock().unwrap_or_else(PoisonError::into_inner);
-            }
-            if let Some(preview) = preview {
-                draw(job, preview);
-            }
-        });
+    let course = watcher.course;
+    let work = || {
         let effort = render_blocks(order.scene, order.options, job);
-        *ended.lock().unwrap_or_else(PoisonError::into_inner) = true;
-        wake.notify_all();
+        course.end();
         effort
+    };
+    std::thread::scope(|scope| {
+        let (terminal, window) = match preview {
+            Preview::None => (None, None),
+            Preview::Terminal(terminal) => (Some(terminal), None),
+            Preview::Window(window) => (None, Some(window)),
+        };
+        scope.spawn(|| watcher.watch(kept, terminal));
+        let Some(window) = window else { return work() };
+        let work = scope.spawn(work);
+        window.show(job, course);
+        work.join().unwrap_or_else(|panic| resume_unwind(panic))
     })
 }
 
@@ -223,12 +199,20 @@ fn leave(order: &Order, job: &Job, mut kept: Kept) -> Failure {
     if can_resume {
         lines.push(format!("go on with: {}", resuming_command()));
     }
+    if order.options.goal != Goal::Mode {
+        lines.push(NO_CHECKPOINT.to_owned());
+    }
     Failure::stopped(signal, &lines.join("\n  "))
 }
 
 /// Writes the picture and deletes its checkpoint; if it cannot be written, brings the checkpoint up to date instead.
-fn finish(order: &Order, job: &Job, mut kept: Kept) -> Result<(), Failure> {
-    let written = job.with_film(|film| order.picture.write(film, order.label));
+fn finish(order: &Order, job: &Job, mut kept: Kept, interrupted: bool) -> Result<(), Failure> {
+    let mut label = order.label.clone();
+    if interrupted {
+        // Not the picture of its other options, whatever its goal.
+        label.options.push_str(" interrupted=yes");
+    }
+    let written = job.with_film(|film| order.picture.write(film, &label));
     let Err(failure) = written else {
         if let Some(checkpoint) = kept.checkpoint.filter(Checkpoint::is_there) {
             let path = checkpoint.path().display().to_string();

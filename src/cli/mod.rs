@@ -23,6 +23,7 @@ mod streams;
 mod study;
 mod target;
 mod view;
+mod watch;
 
 use std::process::ExitCode;
 use std::time::Instant;

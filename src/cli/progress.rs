@@ -1,5 +1,7 @@
 //! How far a render is, on standard error.
 
+mod report;
+
 use std::io::{self, IsTerminal, Write};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -9,6 +11,7 @@ use whitted::render::Progress;
 
 use super::args::ProgressMode;
 use super::streams;
+use report::{Report, bar_text, json_line, openjd_lines, plain_line};
 
 const PLAIN_INTERVAL: Duration = Duration::from_secs(5);
 const JSON_INTERVAL: Duration = Duration::from_millis(100);
@@ -156,80 +159,6 @@ struct Lines {
     tells_end: bool,
 }
 
-/// What is told.
-struct Report {
-    done: u64,
-    total: u64,
-    /// The share that is done.
-    share: f64,
-    /// The share that was done in the time since this program began.
-    fresh: f64,
-    /// That time, in seconds.
-    elapsed: f64,
-    pixels: f64,
-}
-
-impl Report {
-    /// Seconds until the end if the rest takes its time like what was done; unknown at the start.
-    fn seconds_left(&self) -> Option<f64> {
-        (self.fresh > 0.0).then(|| self.elapsed * (1.0 - self.share).max(0.0) / self.fresh)
-    }
-
-    /// Pixels a second.
-    fn rate(&self) -> f64 {
-        if self.elapsed > 0.0 { self.pixels * self.fresh.max(0.0) / self.elapsed } else { 0.0 }
-    }
-}
-
-/// A time as people read it.
-fn duration(seconds: f64) -> String {
-    let whole = seconds.round() as u64;
-    match (whole / 3600, whole / 60 % 60, whole % 60) {
-        (0, 0, s) => format!("{s} s"),
-        (0, m, s) => format!("{m} min {s:02} s"),
-        (h, m, _) => format!("{h} h {m:02} min"),
-    }
-}
-
-/// A rate as people read it.
-fn readable_rate(rate: f64) -> String {
-    match rate {
-        0.0..1e3 => format!("{rate:.0} pixels/s"),
-        1e3..1e6 => format!("{:.0} kpixels/s", rate / 1e3),
-        _ => format!("{:.1} Mpixels/s", rate / 1e6),
-    }
-}
-
-fn bar_text(report: &Report) -> String {
-    let left =
-        report.seconds_left().map_or_else(String::new, |s| format!(", {} left", duration(s)));
-    format!("{}{left}", readable_rate(report.rate()))
-}
-
-fn plain_line(report: &Report) -> String {
-    let left =
-        report.seconds_left().map_or_else(String::new, |s| format!(", {} left", duration(s)));
-    let rate = readable_rate(report.rate());
-    format!("{:.0} % after {}{left}, {rate}", 100.0 * report.share, duration(report.elapsed))
-}
-
-fn json_line(report: &Report) -> String {
-    serde_json::json!({
-        "done": report.done,
-        "total": report.total,
-        "seconds": report.elapsed,
-        "seconds_left": report.seconds_left(),
-        "pixels_per_second": report.rate(),
-    })
-    .to_string()
-}
-
-/// What a worker of Open Job Description takes for progress and status, from either stream.
-fn openjd_lines(report: &Report) -> String {
-    let status = bar_text(report);
-    format!("openjd_progress: {:.1}\nopenjd_status: {status}", 100.0 * report.share)
-}
-
 /// Standard error as indicatif draws on it, terminal or not, for whoever asks for the bar by name.
 #[derive(Debug)]
 struct AnyStderr;
@@ -341,14 +270,5 @@ mod tests {
         let written = lines_of(ProgressMode::Openjd, 0.0, &[(2.0, 25), (2.1, 26), (2.5, 100)]);
         assert_eq!(written[0], "openjd_progress: 25.0\nopenjd_status: 125 kpixels/s, 6 s left");
         assert!(written[1].starts_with("openjd_progress: 100.0\n"), "{written:?}");
-    }
-
-    #[test]
-    fn times_read_well() {
-        let times = [0.4, 59.6, 61.0, 3599.0, 3600.0, 90_000.0].map(duration);
-        assert_eq!(
-            times,
-            ["0 s", "1 min 00 s", "1 min 01 s", "59 min 59 s", "1 h 00 min", "25 h 00 min"]
-        );
     }
 }

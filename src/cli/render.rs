@@ -17,6 +17,7 @@ use super::job::{self, Finished, Order};
 use super::options::{
     check_classic, check_memory, check_parts, check_reference, check_size, label, options,
 };
+use super::preview::Preview;
 use super::signals::Signals;
 use super::stats::{Seconds, Statistics};
 use super::target::{Picture, StatsTarget, check_apart};
@@ -57,9 +58,18 @@ pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
         check_memory(&task.label)?;
         check_reference(&task.label, reference.as_ref())?;
     }
+    let mut preview = Preview::open(args);
     for (k, task) in tasks.iter().enumerate() {
         let since = if several { Instant::now() } else { started };
-        perform(task, args, &scene, &signals, reference.as_ref(), [load, build], since)?;
+        perform(
+            task,
+            args,
+            &scene,
+            (&signals, &mut preview),
+            reference.as_ref(),
+            [load, build],
+            since,
+        )?;
         if let Some(signal) = signals.received().filter(|_| k + 1 < tasks.len()) {
             return Err(Failure::stopped(
                 signal,
@@ -94,7 +104,7 @@ fn perform(
     task: &Task,
     args: &RenderArgs,
     scene: &Scene,
-    signals: &Signals,
+    (signals, preview): (&Signals, &mut Preview),
     reference: Option<&RgbImage>,
     [load, build]: [f64; 2],
     started: Instant,
@@ -109,13 +119,13 @@ fn perform(
         }
         return Ok(());
     }
-    let Finished { rendering, write } = if args.rules == Rules::Classic {
+    let Finished { rendering, write, interrupted } = if args.rules == Rules::Classic {
         let rendering = render_classic(scene, args.threads)?;
         let writing = Instant::now();
         picture.write(&rendering.film, label)?;
-        Finished { rendering, write: writing.elapsed().as_secs_f64() }
+        Finished { rendering, write: writing.elapsed().as_secs_f64(), interrupted: None }
     } else {
-        job::run(&Order { scene, options, label, picture, signals }, args)?
+        job::run(&Order { scene, options, label, picture, signals }, args, preview)?
     };
     let measured = reference.map(|reference| measure(&rendering.film, reference)).transpose()?;
     let total = started.elapsed().as_secs_f64();
@@ -125,10 +135,17 @@ fn perform(
             .write(&Statistics::new(scene, options.aa, &rendering, measured, seconds).to_json()?)?;
     }
     if !is_silent {
-        for warning in warnings(&rendering, args) {
+        for warning in warnings(&rendering, args, interrupted.is_some()) {
             streams::note(&format!("warning: {warning}"));
         }
-        streams::note(&summary(&picture.name(), options.aa, &rendering, measured, total));
+        streams::note(&summary(
+            &picture.name(),
+            options.aa,
+            &rendering,
+            measured,
+            total,
+            interrupted.is_some(),
+        ));
         if args.rules == Rules::Classic {
             let RayCounts { camera_hit, reflected, refracted, shadow, .. } = rendering.rays;
             streams::note(&format!(
@@ -137,13 +154,11 @@ fn perform(
             ));
         }
     }
-    match signals.received() {
-        Some(signal) if rendering.outcome.cut => {
-            let text = format!("early; {} is what there was until then", picture.name());
-            Err(Failure::stopped(signal, &text))
-        }
-        _ => Ok(()),
-    }
+    interrupted.map_or(Ok(()), |signal| {
+        let name = picture.name();
+        let text = format!("before its goal\n  picture so far: {name}\n  {}", job::NO_CHECKPOINT);
+        Err(Failure::stopped(signal, &text))
+    })
 }
 
 /// The error against the reference, as the picture file will have it.
@@ -154,10 +169,10 @@ fn measure(film: &Film, reference: &RgbImage) -> Result<f64, Failure> {
 }
 
 /// What was aimed at but not reached.
-fn warnings(rendering: &Rendering, args: &RenderArgs) -> Vec<String> {
+fn warnings(rendering: &Rendering, args: &RenderArgs, is_interrupted: bool) -> Vec<String> {
     let outcome = &rendering.outcome;
     let mut warnings = Vec::new();
-    if let Some(wanted) = outcome.missed_error {
+    if let Some(wanted) = outcome.missed_error.filter(|_| !is_interrupted) {
         warnings.push(format!(
             "--max-error {wanted} is not reached: the estimated error is {:.3} levels with the most rays a pixel may \
              get; allow more, such as --aa adaptive:0,4096",
@@ -180,8 +195,10 @@ fn summary(
     rendering: &Rendering,
     measured: Option<f64>,
     total: f64,
+    is_interrupted: bool,
 ) -> String {
     let mode = match (rendering.outcome.cut, rendering.outcome.per_ray) {
+        (true, _) if is_interrupted => "adaptive until it was interrupted".to_owned(),
         (true, _) => "adaptive until the time was up".to_owned(),
         (_, Some(per_ray)) => format!("adaptive to {per_ray:.4} squared levels per ray"),
         _ => aa.to_string(),

@@ -2,20 +2,18 @@
 //!
 //! Parts are read row by row while the whole is written, so pictures larger than the memory can be joined.
 
+mod sweep;
+
 use std::{
     fs::File,
-    io::{self, BufReader, Read, Seek},
+    io,
     path::{Path, PathBuf},
 };
 
 use thiserror::Error;
 
-use super::{
-    Format, ImageError, Label, OutputFile, Share, Tile, encode,
-    exr::{self, ExrReader, Row},
-    png::{self, PngReader},
-    ppm,
-};
+use super::{Format, ImageError, Label, OutputFile, Share, Tile};
+use sweep::{Reader, write};
 
 /// Why parts do not make a picture.
 #[derive(Debug, Error)]
@@ -100,10 +98,10 @@ struct Part {
     is_exr: bool,
 }
 
-/// What reads a part's pixels.
-enum Reader {
-    Png(Box<PngReader<BufReader<File>>>),
-    Exr(Box<ExrReader<File>>),
+impl Part {
+    fn is_in_row(&self, y: u32) -> bool {
+        (self.place.y0..self.place.y1).contains(&y)
+    }
 }
 
 /// What a PNG or OpenEXR file says of itself; none if it has no complete label.
@@ -112,20 +110,6 @@ enum Reader {
 /// The file cannot be read, or is of another kind.
 pub fn read_label(file: File) -> io::Result<Option<Label>> {
     Reader::open(file).map(|(_, _, label)| label)
-}
-
-impl Reader {
-    fn open(mut file: File) -> io::Result<(Self, [u32; 2], Option<Label>)> {
-        let mut magic = [0; 4];
-        file.read_exact(&mut magic)?;
-        file.rewind()?;
-        if magic == [0x76, 0x2f, 0x31, 0x01] {
-            let (reader, size, label) = ExrReader::open(file)?;
-            return Ok((Self::Exr(Box::new(reader)), size, label));
-        }
-        let (reader, size, label) = PngReader::open(file)?;
-        Ok((Self::Png(Box::new(reader)), size, label))
-    }
 }
 
 /// Joins `parts` to the picture `output`, byte for byte the one that an undivided render writes; returns its size in pixels.
@@ -232,105 +216,4 @@ fn missing(parts: &[Part], gap: Tile) -> String {
     format!(
         "the pixels from ({x0}, {y0}) to ({x1}, {y1}) are in no part; render with --crop {x0},{y0},{x1},{y1}"
     )
-}
-
-impl Part {
-    fn is_in_row(&self, y: u32) -> bool {
-        (self.place.y0..self.place.y1).contains(&y)
-    }
-}
-
-/// The parts that a row goes through, opened when the first of their rows comes.
-struct Sweep<'a> {
-    parts: &'a [Part],
-    next: usize,
-    active: Vec<(&'a Part, Reader)>,
-    y: u32,
-    /// Which part could not be read.
-    failed: Option<PathBuf>,
-}
-
-impl Sweep<'_> {
-    /// Hands the readers of the next row to `read`, from left to right.
-    fn advance(&mut self, mut read: impl FnMut(&mut Reader) -> io::Result<()>) -> io::Result<()> {
-        let y = self.y;
-        self.active.retain(|(part, _)| part.is_in_row(y));
-        while let Some(part) = self.parts.get(self.next).filter(|part| part.place.y0 == y) {
-            self.next += 1;
-            match File::open(&part.path).and_then(Reader::open) {
-                Ok((reader, ..)) => self.active.push((part, reader)),
-                Err(error) => {
-                    self.failed = Some(part.path.clone());
-                    return Err(error);
-                }
-            }
-        }
-        self.active.sort_by_key(|(part, _)| part.place.x0);
-        for (part, reader) in &mut self.active {
-            read(reader).inspect_err(|_| self.failed = Some(part.path.clone()))?;
-        }
-        self.y += 1;
-        Ok(())
-    }
-
-    /// The next row as 8-bit sRGB.
-    fn bytes(&mut self, bytes: &mut Vec<u8>) -> io::Result<()> {
-        bytes.clear();
-        let (mut row, mut encoded) = (Row::default(), Vec::new());
-        self.advance(|reader| {
-            match reader {
-                Reader::Png(reader) => bytes.extend_from_slice(reader.read_row()?),
-                Reader::Exr(reader) => {
-                    reader.read_row(&mut row)?;
-                    encode::encode_row(&row.colors, &mut encoded);
-                    bytes.extend_from_slice(&encoded);
-                }
-            }
-            Ok(())
-        })
-    }
-
-    /// The next row as floats.
-    fn floats(&mut self, whole: &mut Row) -> io::Result<()> {
-        whole.colors.clear();
-        whole.samples.clear();
-        let mut row = Row::default();
-        self.advance(|reader| {
-            let Reader::Exr(reader) = reader else {
-                return Err(io::ErrorKind::InvalidData.into()); // it was another file a moment ago
-            };
-            reader.read_row(&mut row)?;
-            whole.colors.append(&mut row.colors);
-            whole.samples.append(&mut row.samples);
-            Ok(())
-        })
-    }
-}
-
-fn write(parts: &[Part], label: &Label, output: &OutputFile) -> Result<(), MergeError> {
-    let [width, height] = label.size;
-    let mut sweep = Sweep { parts, next: 0, active: Vec::new(), y: 0, failed: None };
-    let written = output.file().commit(|mut writer| match output.format() {
-        Format::Png => {
-            png::write_rows(label.size, Some(label), writer, &mut |bytes| sweep.bytes(bytes))
-        }
-        Format::Exr => {
-            exr::write_rows(label.size, Some(label), writer, &mut |row| sweep.floats(row))
-        }
-        Format::Ppm => {
-            ppm::write_header(width, height, &mut writer)?;
-            let mut bytes = Vec::new();
-            (0..height).try_for_each(|_| {
-                sweep.bytes(&mut bytes)?;
-                writer.write_all(&bytes)
-            })
-        }
-    });
-    match (written, sweep.failed) {
-        (Ok(()), _) => Ok(()),
-        (Err(super::FileError::Write { source, .. }), Some(path)) => {
-            Err(MergeError::Read { path, source })
-        }
-        (Err(error), _) => Err(MergeError::Output(error.into())),
-    }
 }

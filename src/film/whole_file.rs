@@ -1,10 +1,10 @@
 //! Files that appear whole or not at all.
 
+mod part;
+
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
-
-use tempfile::NamedTempFile;
 
 /// A file cannot be written; what stood in its place before is untouched.
 #[derive(Debug, thiserror::Error)]
@@ -65,7 +65,8 @@ impl<W: Write + Seek> WriteSeek for W {}
 ///
 /// [`prepare`](Self::prepare) finds out whether it can be written before the work for its contents
 /// starts; [`commit`](Self::commit) writes a temporary file beside it and renames that into place.
-/// Between the two nothing of it exists, so an interrupted program leaves nothing behind.
+/// Between the two nothing of it exists, so an interrupted program leaves nothing behind. What one that was killed
+/// while it wrote left is deleted by the next `prepare` in the folder.
 ///
 /// A symbolic link stays, and the file it leads to is replaced. Devices and pipes are written
 /// directly, since there is nothing to keep whole.
@@ -131,8 +132,9 @@ impl WholeFile {
             }
             Err(source) => return Err(FileError::Create { path, source }),
         }
+        part::sweep(&folder);
         // Created and dropped, that is removed, at once.
-        if let Err(source) = create_beside(&folder) {
+        if let Err(source) = part::create(&folder) {
             return Err(FileError::Create { path, source });
         }
         Ok(Self { path, place: Place::Disk { target, folder } })
@@ -188,11 +190,11 @@ fn replace(
     folder: &Path,
     write: impl FnOnce(&mut dyn WriteSeek) -> io::Result<()>,
 ) -> io::Result<()> {
-    let file = match create_beside(folder) {
+    let file = match part::create(folder) {
         // Deleted since it was looked at: what was worked for is not to be lost for that.
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
             fs::create_dir_all(folder)?;
-            create_beside(folder)?
+            part::create(folder)?
         }
         created => created?,
     };
@@ -242,16 +244,6 @@ impl Seek for Watched<'_> {
     fn seek(&mut self, to: io::SeekFrom) -> io::Result<u64> {
         self.file.seek(to)
     }
-}
-
-/// A temporary file in `folder`, gone when dropped. Its name is short whatever the target's, so
-/// that a name that just fits does not fail here.
-fn create_beside(folder: &Path) -> io::Result<NamedTempFile> {
-    tempfile::Builder::new()
-        .prefix(".whitted-")
-        .suffix(".part")
-        // Opened here, because tempfile would shut out everyone else, whatever the umask.
-        .make_in(folder, |path| File::create_new(path))
 }
 
 /// The folder a file lies in, `.` for a bare name.

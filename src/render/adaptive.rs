@@ -62,19 +62,23 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 
 impl Adaptive {
     /// Traces the centres of `area`, and of the pixels around it, so that a part of a picture is that of the whole.
+    ///
+    /// When `stop` says so, the pixels that are left have no samples, and nothing is to be refined.
     pub(super) fn new<S: Sampler + Send>(
         crew: &Crew<S>,
         area: &Area,
         width: u32,
         most: u32,
+        stop: impl Fn() -> bool + Sync,
     ) -> Self {
-        let centers = trace_centers(crew, &area.grown(1));
+        let centers = trace_centers(crew, &area.grown(1), stop);
         let spent = centers.values().iter().map(|sample| u64::from(sample.rays)).sum();
         let stages = stages(most);
+        let samples = area.pixels().map(|(x, y)| u32::from(centers.at(x, y).rays > 0)).collect();
         let known = Mutex::new(Known {
             pixels: Plane::new(*area, Pixel::default()),
             colors: Plane::new(*area, Rgb::ZERO),
-            samples: Plane::new(*area, 1),
+            samples: Plane::of(*area, samples),
             outlooks: outlooks(area),
         });
         let has_thin = (crew.new_sampler)().has_thin();
@@ -267,6 +271,11 @@ impl Adaptive {
     pub(super) fn estimated_rmse(&self) -> f64 {
         let sum: f64 = self.known.outlooks.values().iter().map(|tile| tile.expected).sum();
         (sum / self.area.len().max(1) as f64).sqrt()
+    }
+
+    /// The colours and the rays of the pixels so far.
+    pub(super) fn shown(&self) -> (&[Rgb], &[u32]) {
+        (self.known.colors.values(), self.known.samples.values())
     }
 
     /// Rays of all kinds so far.

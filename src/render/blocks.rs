@@ -69,8 +69,12 @@ pub trait Sink: Sync {
         true
     }
 
-    /// Takes a block.
+    /// Takes a block. Only a picture towards an error or until a time that was stopped can have pixels without rays.
     fn put(&self, block: Block);
+
+    /// Takes a look at a picture towards an error or until a time, whose every pixel has a ray already: its place, colours and the rays
+    /// through each pixel.
+    fn show(&self, _place: &Tile, _colors: &[Rgb], _samples: &[u32]) {}
 
     /// Whether no further block is to be begun. Blocks at which work goes on are finished; a picture towards an error or until
     /// a time, which is one block, ends as it is.

@@ -131,23 +131,22 @@ pub(super) fn center(x: i64, y: i64) -> DVec2 {
     DVec2::new(x as f64 + 0.5, y as f64 + 0.5)
 }
 
-/// Traces the centre of every pixel of the plane.
-pub(super) fn trace_centers<S: Sampler + Send>(crew: &Crew<S>, area: &Area) -> Plane<Sample> {
+/// Traces the centre of every pixel of the plane; where `stop` says so, samples without rays are left.
+pub(super) fn trace_centers<S: Sampler + Send>(
+    crew: &Crew<S>,
+    area: &Area,
+    stop: impl Fn() -> bool + Sync,
+) -> Plane<Sample> {
     let centers = Mutex::new(Plane::new(*area, Sample::default()));
-    crew.run(
-        area,
-        true,
-        || false,
-        |sampler, scratch, tile| {
-            scratch.places.clear();
-            scratch.samples.clear();
-            scratch.places.extend(in_turn(tile).map(|(x, y)| center(x, y)));
-            sampler.sample(&scratch.places, &mut scratch.samples);
-            let mut centers = centers.lock().unwrap_or_else(PoisonError::into_inner);
-            for ((x, y), sample) in in_turn(tile).zip(&scratch.samples) {
-                *centers.at_mut(x, y) = *sample;
-            }
-        },
-    );
+    crew.run(area, true, stop, |sampler, scratch, tile| {
+        scratch.places.clear();
+        scratch.samples.clear();
+        scratch.places.extend(in_turn(tile).map(|(x, y)| center(x, y)));
+        sampler.sample(&scratch.places, &mut scratch.samples);
+        let mut centers = centers.lock().unwrap_or_else(PoisonError::into_inner);
+        for ((x, y), sample) in in_turn(tile).zip(&scratch.samples) {
+            *centers.at_mut(x, y) = *sample;
+        }
+    });
     centers.into_inner().unwrap_or_else(PoisonError::into_inner)
 }

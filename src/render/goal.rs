@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::{
-    Outcome,
+    Outcome, Watch,
     adaptive::Adaptive,
     crew::{Crew, Sampler},
     round::Threshold,
@@ -16,6 +16,8 @@ const STEPS_TO_HALF: f64 = 2.0;
 const LAST_STEP: u32 = 80;
 /// The picture's error goes about like this power of the threshold.
 const ERROR_POWER: f64 = 0.27;
+/// The rays that an error takes go about like this power of its inverse.
+const RAYS_POWER: f64 = 1.5;
 /// The part of a predicted jump down the ladder that is taken at once, so as not to overshoot.
 const JUMP: f64 = 0.6;
 /// The part of the time left that a step of a time-limited picture should take.
@@ -30,7 +32,7 @@ fn at_step(step: u32) -> f32 {
     (FIRST_STEP * (-f64::from(step) / STEPS_TO_HALF).exp2()) as f32
 }
 
-/// Refines where the squared error for each ray is largest, until the estimate is `wanted` levels or less, or `stop` says so.
+/// Refines where the squared error for each ray is largest, until the estimate is `wanted` levels or less, or `watch` stops it.
 ///
 /// The threshold goes down a fixed ladder, and the picture is that of the threshold at which it ends: what is spent on the way is
 /// part of it.
@@ -38,9 +40,8 @@ pub(super) fn reach_error<S: Sampler + Send>(
     adaptive: &mut Adaptive,
     crew: &Crew<S>,
     wanted: f64,
-    stop: &(dyn Fn() -> bool + Sync),
+    watch: &Watch,
 ) -> Outcome {
-    let start = adaptive.estimated_rmse().max(f64::MIN_POSITIVE);
     let mut step = 0;
     let mut per_ray = None;
     loop {
@@ -48,22 +49,23 @@ pub(super) fn reach_error<S: Sampler + Send>(
         if error <= wanted {
             return Outcome { per_ray, ..Outcome::default() };
         }
-        if stop() {
+        if (watch.stop)() {
             return Outcome { cut: true, missed_error: Some(wanted), ..Outcome::default() };
         }
         if step > LAST_STEP || !adaptive.can_improve() {
             return Outcome { per_ray, missed_error: Some(wanted), ..Outcome::default() };
         }
-        crew.meter.reach((start / error).ln() / (start / wanted).ln());
+        watch.show(adaptive);
+        crew.meter.reach((wanted / error).powf(RAYS_POWER));
         let threshold = at_step(step);
-        adaptive.refine(crew, Threshold::PerRay(threshold), false, stop);
+        adaptive.refine(crew, Threshold::PerRay(threshold), false, watch.stop);
         per_ray = Some(threshold);
         let steps = STEPS_TO_HALF * (adaptive.estimated_rmse() / wanted).log2() / ERROR_POWER;
         step += if steps.is_finite() { (steps * JUMP).max(1.0) as u32 } else { LAST_STEP / 4 };
     }
 }
 
-/// Refines where the squared error for each ray is largest, until `end`, or until `stopped` says so.
+/// Refines where the squared error for each ray is largest, until `end`, or until `watch` stops it.
 ///
 /// Each step takes a part of the time left, as predicted from the rays before; the pixels of the last one are taken by chance,
 /// so that no part of the picture is left out.
@@ -71,10 +73,10 @@ pub(super) fn reach_time<S: Sampler + Send>(
     adaptive: &mut Adaptive,
     crew: &Crew<S>,
     (started, end): (Instant, Instant),
-    stopped: &(dyn Fn() -> bool + Sync),
+    watch: &Watch,
 ) -> Outcome {
     let whole = end.saturating_duration_since(started).as_secs_f64().max(1e-9);
-    let stop = || Instant::now() >= end || stopped();
+    let stop = || Instant::now() >= end || (watch.stop)();
     if Instant::now() >= end {
         return Outcome { late: Some(started.elapsed()), ..Outcome::default() };
     }
@@ -82,9 +84,10 @@ pub(super) fn reach_time<S: Sampler + Send>(
     let mut round = 0;
     loop {
         let left = end.saturating_duration_since(Instant::now());
-        if left < SHORTEST || stopped() {
+        if left < SHORTEST || (watch.stop)() {
             break;
         }
+        watch.show(adaptive);
         crew.meter.reach(1.0 - left.as_secs_f64() / whole);
         let demand = adaptive.demand();
         let affordable = left.as_secs_f64() / seconds_per_ray;

@@ -191,37 +191,54 @@ pub fn picture<S: Sampler + Send>(
     new_sampler: &(dyn Fn() -> S + Sync),
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Picture {
-    picture_until(part, width, (aa, goal), new_sampler, progress, &|| false)
+    let watch = Watch { stop: &|| false, show: &|_, _| () };
+    picture_watched(part, width, (aa, goal), new_sampler, progress, &watch)
 }
 
-/// The same; a picture towards an error or until a time ends as it is when `stop` says so.
-fn picture_until<S: Sampler + Send>(
+/// Who looks after a picture towards an error or until a time.
+struct Watch<'a> {
+    /// Whether it is to end as it is.
+    stop: &'a (dyn Fn() -> bool + Sync),
+    /// Takes the colours and the rays of the pixels so far.
+    show: &'a dyn Fn(&[Rgb], &[u32]),
+}
+
+impl Watch<'_> {
+    fn show(&self, adaptive: &Adaptive) {
+        let (colors, samples) = adaptive.shown();
+        (self.show)(colors, samples);
+    }
+}
+
+/// The same, looked after.
+fn picture_watched<S: Sampler + Send>(
     part: &Tile,
     width: u32,
     (aa, goal): (AntiAliasing, Goal),
     new_sampler: &(dyn Fn() -> S + Sync),
     progress: &(dyn Fn(Progress) + Sync),
-    stop: &(dyn Fn() -> bool + Sync),
+    watch: &Watch,
 ) -> Picture {
     let area = Area::of(part);
     let started = Instant::now();
-    let meter = Meter::new(progress_units(aa) * area.len() as u64, progress);
+    let meter = Meter::new(progress_units(aa, goal) * area.len() as u64, progress);
     let crew = Crew { new_sampler, meter: &meter };
     match aa {
         AntiAliasing::None | AntiAliasing::Grid { side: 1 } => plain::centers(&crew, &area),
         AntiAliasing::Grid { side } => plain::grid(&crew, &area, side),
         AntiAliasing::Sequence { count } => plain::sequence(&crew, &area, width, count),
         AntiAliasing::Adaptive { error, most } => {
-            let mut adaptive = Adaptive::new(&crew, &area, width, most);
-            meter.reach(0.5);
+            let stop = || goal != Goal::Mode && (watch.stop)();
+            let mut adaptive = Adaptive::new(&crew, &area, width, most, stop);
             let outcome = match goal {
                 Goal::Mode => {
+                    meter.reach(0.5);
                     adaptive.refine(&crew, Threshold::Error(error * error), true, || false);
                     let unsettled = adaptive.unsettled(error * error);
                     Outcome { unsettled, ..Outcome::default() }
                 }
-                Goal::Error(wanted) => goal::reach_error(&mut adaptive, &crew, wanted, stop),
-                Goal::Until(end) => goal::reach_time(&mut adaptive, &crew, (started, end), stop),
+                Goal::Error(wanted) => goal::reach_error(&mut adaptive, &crew, wanted, watch),
+                Goal::Until(end) => goal::reach_time(&mut adaptive, &crew, (started, end), watch),
             };
             meter.reach(1.0);
             Picture { outcome, ..adaptive.into_picture() }
@@ -229,9 +246,14 @@ fn picture_until<S: Sampler + Send>(
     }
 }
 
-/// How much of [`Progress`] a pixel is: the adaptive mode goes over it twice.
-fn progress_units(aa: AntiAliasing) -> u64 {
-    if matches!(aa, AntiAliasing::Adaptive { .. }) { 2 } else { 1 }
+/// How much of [`Progress`] a pixel is, of which its centre is one: the adaptive mode goes over it twice, and on the way to a goal the
+/// centres are the least of it.
+fn progress_units(aa: AntiAliasing, goal: Goal) -> u64 {
+    match (aa, goal) {
+        (AntiAliasing::Adaptive { .. }, Goal::Mode) => 2,
+        (AntiAliasing::Adaptive { .. }, _) => 64,
+        _ => 1,
+    }
 }
 
 /// Renders `scene`; `progress` is called from the worker threads after every tile.
@@ -310,12 +332,13 @@ pub fn render_blocks(
             thin: thin.as_ref(),
             counts: &rays,
         };
-        let stop = || sink.is_stopped();
-        let picture = picture_until(place, width, mode, &new_sampler, progress, &stop);
+        let show = |colors: &[Rgb], samples: &[u32]| sink.show(place, colors, samples);
+        let watch = Watch { stop: &|| sink.is_stopped(), show: &show };
+        let picture = picture_watched(place, width, mode, &new_sampler, progress, &watch);
         let rays = rays.into_inner().unwrap_or_else(PoisonError::into_inner);
         picture.into_block(number, *place, rays)
     };
     let places = blocks(&part, options.aa, options.goal);
-    pool.install(|| blocks::run(&places, progress_units(options.aa), sink, &block));
+    pool.install(|| blocks::run(&places, progress_units(options.aa, options.goal), sink, &block));
     Ok(Effort { threads, seconds: started.elapsed().as_secs_f64(), depth })
 }

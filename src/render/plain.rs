@@ -28,7 +28,7 @@ const BATCH: usize = 64;
 
 /// One ray through each centre.
 pub(super) fn centers<S: Sampler + Send>(crew: &Crew<S>, area: &Area) -> Picture {
-    let centers = trace_centers(crew, area);
+    let centers = trace_centers(crew, area, || false);
     let errors = Mutex::new(Plane::new(*area, 0.0));
     each_tile(area, |tile| {
         let window = Window::of_centers(tile, &centers);

@@ -92,6 +92,12 @@ impl<T: Clone> Plane<T> {
 }
 
 impl<T> Plane<T> {
+    /// The values of the area's pixels, row by row.
+    pub(super) fn of(area: Area, values: Vec<T>) -> Self {
+        debug_assert_eq!(values.len(), area.len());
+        Self { area, values }
+    }
+
     pub(super) fn area(&self) -> &Area {
         &self.area
     }

@@ -19,9 +19,11 @@ mod parts;
 mod report;
 mod shapes;
 mod stage;
+mod surfaces;
 #[cfg(test)]
 mod tests;
 pub mod text;
+mod values;
 mod warning;
 
 use std::{ops::ControlFlow, sync::Arc, time::Instant};

@@ -75,7 +75,8 @@ pub(crate) struct RenderArgs {
     pub(crate) resume: bool,
 
     /// Seconds between checkpoints, beside the output with .checkpoint behind its name; it is deleted when the picture is
-    /// finished. Pictures on standard output, and those with --max-error or --time-limit, have none
+    /// finished. Pictures on standard output, and those with --max-error or --time-limit, have none; of the latter two Ctrl-C
+    /// writes what there is
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, default_value = "30",
         allow_negative_numbers = true, help_heading = "Long renders")]
     pub(crate) checkpoint: f64,
@@ -109,7 +110,8 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "MODE", value_enum, default_value_t, help_heading = "Messages")]
     pub(crate) progress: ProgressMode,
 
-    /// The picture in the terminal while it is rendered, block by block: two pixels a letter, in 24-bit colours
+    /// The picture while it is rendered, block by block: in a window if the program was built with them and there is a display,
+    /// else in the terminal, two pixels a letter, in 24-bit colours
     #[arg(long, conflicts_with = "quiet", help_heading = "Messages")]
     pub(crate) preview: bool,
 

@@ -1,7 +1,11 @@
-//! `whitted view`: a window to look around in.
+//! `whitted view`: a window to look around in; and the window of `render --preview`.
 
 #[cfg(feature = "view")]
 mod controls;
+#[cfg(feature = "view")]
+mod pane;
+#[cfg(feature = "view")]
+mod preview;
 #[cfg(feature = "view")]
 mod text;
 #[cfg(feature = "view")]
@@ -9,8 +13,15 @@ mod viewer;
 #[cfg(feature = "view")]
 mod window;
 
+#[cfg(feature = "view")]
+pub(crate) use preview::PreviewWindow;
+
 use super::args::ViewArgs;
 use super::failure::Failure;
+#[cfg(not(feature = "view"))]
+use super::watch::Course;
+#[cfg(not(feature = "view"))]
+use whitted::checkpoint::Job;
 
 /// Opens the window, and ends when it is closed.
 #[cfg(feature = "view")]
@@ -26,4 +37,19 @@ pub(crate) fn run(args: &ViewArgs) -> Result<(), Failure> {
 pub(crate) fn run(_args: &ViewArgs) -> Result<(), Failure> {
     let message = "this program was built without windows; `cargo install --path . --features view` builds one that has them";
     Err(anyhow::anyhow!(message).into())
+}
+
+/// A program without windows has none to show.
+#[cfg(not(feature = "view"))]
+pub(crate) enum PreviewWindow {}
+
+#[cfg(not(feature = "view"))]
+impl PreviewWindow {
+    pub(crate) fn open() -> Option<Self> {
+        None
+    }
+
+    pub(crate) fn show(&mut self, _: &Job, _: &Course) {
+        match *self {}
+    }
 }

@@ -1,27 +1,19 @@
 //! The window, and what happens in it.
 
-use std::num::NonZeroU32;
-use std::rc::Rc;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context as _, anyhow};
 use glam::DVec2;
-use softbuffer::{Context, Surface};
-use whitted::film::encode::to_srgb8;
 use winit::application::ApplicationHandler;
-use winit::dpi::PhysicalSize;
 use winit::event::{ElementState, WindowEvent};
-use winit::event_loop::{ActiveEventLoop, EventLoop, EventLoopProxy, OwnedDisplayHandle};
-use winit::window::{Window, WindowId};
+use winit::event_loop::{ActiveEventLoop, EventLoop, EventLoopProxy};
+use winit::window::WindowId;
 
 use super::super::failure::Failure;
 use super::controls::{self, Action, Mouse};
-use super::text::Pixels;
+use super::pane::Pane;
 use super::viewer::Viewer;
-
-/// Windows at least so high have letters of double size.
-const HIGH: usize = 900;
 
 /// What the render has to say to the window.
 #[derive(Debug)]
@@ -48,14 +40,9 @@ pub(super) fn run(events: EventLoop<Event>, viewer: Viewer) -> Result<(), Failur
     let proxy = events.create_proxy();
     let is_told = Arc::new(AtomicBool::new(false));
     let mut app =
-        App { viewer, proxy, is_told, mouse: Mouse::default(), open: None, failure: None };
+        App { viewer, proxy, is_told, mouse: Mouse::default(), pane: None, failure: None };
     events.run_app(&mut app).context("the window failed")?;
     app.failure.map_or(Ok(()), Err)
-}
-
-struct Open {
-    window: Rc<Window>,
-    surface: Surface<OwnedDisplayHandle, Rc<Window>>,
 }
 
 struct App {
@@ -64,25 +51,11 @@ struct App {
     /// Whether a [`Event::Changed`] is on its way, which then is enough.
     is_told: Arc<AtomicBool>,
     mouse: Mouse,
-    open: Option<Open>,
+    pane: Option<Pane>,
     failure: Option<Failure>,
 }
 
 impl App {
-    fn open(&mut self, events: &ActiveEventLoop) -> Result<(), Failure> {
-        let [width, height] = self.viewer.size();
-        let attributes = Window::default_attributes()
-            .with_title("whitted")
-            .with_inner_size(PhysicalSize::new(width, height));
-        let window =
-            Rc::new(events.create_window(attributes).context("the window cannot be opened")?);
-        let failed = |error| anyhow!("the window cannot be drawn in: {error}");
-        let context = Context::new(events.owned_display_handle()).map_err(failed)?;
-        let surface = Surface::new(&context, Rc::clone(&window)).map_err(failed)?;
-        self.open = Some(Open { window, surface });
-        Ok(())
-    }
-
     /// Ends if that failed.
     fn done(&mut self, events: &ActiveEventLoop, result: Result<(), Failure>) {
         if let Err(failure) = result {
@@ -100,8 +73,8 @@ impl App {
     }
 
     fn redraw(&self) {
-        if let Some(open) = &self.open {
-            open.window.request_redraw();
+        if let Some(pane) = &self.pane {
+            pane.request_redraw();
         }
     }
 
@@ -125,39 +98,19 @@ impl App {
     }
 
     fn draw(&mut self) -> Result<(), Failure> {
-        let Some(Open { window, surface }) = &mut self.open else { return Ok(()) };
-        let PhysicalSize { width, height } = window.inner_size();
-        let (Some(columns), Some(rows)) = (NonZeroU32::new(width), NonZeroU32::new(height)) else {
-            return Ok(());
-        };
-        let failed = |error| anyhow!("the window cannot be drawn in: {error}");
-        surface.resize(columns, rows).map_err(failed)?;
-        let mut buffer = surface.buffer_mut().map_err(failed)?;
+        let Some(pane) = &mut self.pane else { return Ok(()) };
         let shown = self.viewer.canvas().look();
-        let bytes = if [shown.film.width(), shown.film.height()] == [width, height] {
-            to_srgb8(&shown.film)
-        } else {
-            to_srgb8(&shown.film.resampled([width, height]))
-        };
-        for (pixel, rgb) in buffer.iter_mut().zip(bytes.chunks_exact(3)) {
-            *pixel = u32::from_be_bytes([0, rgb[0], rgb[1], rgb[2]]);
-        }
+        let bytes = pane.bytes_of(&shown.film);
         let (lines, title) = (self.viewer.lines(&shown), self.viewer.status(&shown));
         drop(shown);
-        let (width, height) = (width as usize, height as usize);
-        let dot = if height >= HIGH { 2 } else { 1 };
-        Pixels { width, height, values: &mut buffer }.write(&lines, dot);
-        window.set_title(&format!("whitted: {title}"));
-        window.pre_present_notify();
-        buffer.present().map_err(failed)?;
-        Ok(())
+        pane.draw(&bytes, &lines, &title)
     }
 }
 
 impl ApplicationHandler<Event> for App {
     fn resumed(&mut self, events: &ActiveEventLoop) {
-        if self.open.is_none() {
-            let opened = self.open(events);
+        if self.pane.is_none() {
+            let opened = Pane::open(events, self.viewer.size()).map(|pane| self.pane = Some(pane));
             self.done(events, opened);
         }
         self.work(events);

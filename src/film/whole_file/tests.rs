@@ -55,6 +55,24 @@ fn a_folder_that_is_deleted_meanwhile_is_made_again() {
     assert_eq!(names_in(&inner), ["file"]);
 }
 
+/// Locks stand in for the life of other programs; `tests/survive` kills real ones.
+#[test]
+fn only_what_no_living_program_writes_is_swept() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [dead, live, other] =
+        [".whitted-a.part", ".whitted-b.part", ".whitted-c.png"].map(|n| folder.path().join(n));
+    for path in [&dead, &other] {
+        fs::write(path, "half").expect("written");
+    }
+    let writer = File::create(&live).expect("created");
+    writer.lock().expect("locked");
+    WholeFile::prepare(folder.path().join("new")).expect("writable");
+    assert_eq!(names_in(folder.path()), [".whitted-b.part", ".whitted-c.png"]);
+    drop(writer);
+    WholeFile::prepare(folder.path().join("new")).expect("writable");
+    assert_eq!(names_in(folder.path()), [".whitted-c.png"]);
+}
+
 #[test]
 fn places_that_take_no_file_are_refused_with_their_reason() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -10,9 +10,10 @@ use toml::{
 use super::{
     Place,
     fault::{Fault, Faults},
-    keys::{Key, Kind, Range, SCENE},
+    keys::{Key, Kind, SCENE},
     nearest,
     sound::Sound,
+    values::{is_in, listed, number, range_text, shown, unknown, vector, whole},
 };
 
 pub(super) type Value<'a> = Spanned<DeValue<'a>>;
@@ -50,15 +51,17 @@ impl<'a> Checker<'a> {
         Faults { file: self.name.to_owned(), faults }
     }
 
-    /// Finds the faults; `exists` says whether a file that is named is there. What is sound beside them is given back,
-    /// unless the text cannot be parsed at all.
+    /// Finds the faults; `exists` says whether a file that is named is there. If there are any, what is sound beside them is given
+    /// back.
     pub(super) fn check(&mut self, exists: &dyn Fn(&str) -> bool) -> Option<Sound> {
         let root = std::mem::replace(&mut self.root, Spanned::new(0..0, DeTable::new()));
         // What could not be parsed may be what seems to be missing.
         let is_whole = self.faults.is_empty();
         let walk = Walk { root: root.get_ref(), exists, is_whole };
         walk.table(root.get_ref(), SCENE, 0..0, "the scene", &mut self.faults);
-        let sound = (is_whole && !self.faults.is_empty()).then(|| Sound::read(&walk));
+        // Only what is complete and names nothing that was lost is sound.
+        let strict = Walk { is_whole: true, ..walk };
+        let sound = (!self.faults.is_empty()).then(|| Sound::read(&strict));
         self.root = root;
         sound
     }
@@ -241,73 +244,5 @@ impl Walk<'_, '_> {
             span,
             format!("`{key}` is `{text}`, which is no {table} of this scene; {hint}"),
         ));
-    }
-}
-
-fn unknown(what: &str, name: &str, keys: &[Key]) -> String {
-    let names = || keys.iter().map(|key| key.name);
-    match nearest(name, names()) {
-        Some(near) => format!("unknown {what} `{name}`; did you mean `{near}`?"),
-        None => format!("unknown {what} `{name}`; known: {}", listed(names())),
-    }
-}
-
-fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
-    names.map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
-}
-
-/// A value as a message shows it.
-fn shown(value: &DeValue) -> String {
-    match value {
-        DeValue::String(text) if text.len() <= 40 => format!("\"{}\"", text.escape_debug()),
-        DeValue::String(_) => "a text".to_owned(),
-        DeValue::Integer(_) | DeValue::Float(_) => {
-            number(value).map_or("a number".to_owned(), |x| x.to_string())
-        }
-        DeValue::Boolean(value) => value.to_string(),
-        DeValue::Datetime(_) => "a date".to_owned(),
-        DeValue::Array(list) => match list.iter().map(|v| number(v.get_ref())).collect() {
-            Some::<Vec<f64>>(numbers) if numbers.len() <= 4 => format!("{numbers:?}"),
-            _ => format!("a list of {}", list.len()),
-        },
-        DeValue::Table(_) => "a table".to_owned(),
-    }
-}
-
-fn number(value: &DeValue) -> Option<f64> {
-    match value {
-        DeValue::Float(x) => x.as_str().replace('_', "").parse().ok(),
-        DeValue::Integer(x) => i64::from_str_radix(x.as_str(), x.radix()).ok().map(|x| x as f64),
-        _ => None,
-    }
-}
-
-fn whole(value: &DeValue) -> Option<u32> {
-    let integer = value.as_integer()?;
-    i64::from_str_radix(integer.as_str(), integer.radix()).ok()?.try_into().ok()
-}
-
-fn vector(value: &Value, accepts: impl Fn(f64) -> bool) -> Option<()> {
-    let list = value.get_ref().as_array()?;
-    let is_good = |v: &Value| number(v.get_ref()).is_some_and(&accepts);
-    (list.len() == 3 && list.iter().all(is_good)).then_some(())
-}
-
-fn is_in(x: f64, range: Range) -> bool {
-    x.is_finite()
-        && match range {
-            Range::Any => true,
-            Range::Positive => x > 0.0,
-            Range::AtLeastZero => x >= 0.0,
-            Range::Angle => x > 0.0 && x < 180.0,
-        }
-}
-
-fn range_text(range: Range) -> &'static str {
-    match range {
-        Range::Any => "a finite number",
-        Range::Positive => "a positive number",
-        Range::AtLeastZero => "zero or a positive number",
-        Range::Angle => "an angle in degrees, between 0 and 180",
     }
 }

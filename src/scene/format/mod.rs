@@ -6,6 +6,7 @@ mod keys;
 mod nearest;
 mod schema;
 mod sound;
+mod values;
 
 pub use self::{
     fault::{Fault, Faults},
@@ -49,7 +50,7 @@ impl<'a> SceneText<'a> {
     /// Reads the description in `text`, that of the file `name`; `exists` says whether a file that it names is there.
     ///
     /// # Errors
-    /// What is wrong with a text of which nothing can be used.
+    /// Table of keys and types disagree.
     pub fn parse(
         name: &'a str,
         text: &'a str,
@@ -58,9 +59,6 @@ impl<'a> SceneText<'a> {
         let mut checker = Checker::new(name, text);
         if let Some(sound) = checker.check(exists) {
             return Ok(Self { checker, sound });
-        }
-        if !checker.faults.is_empty() {
-            return Err(checker.into_faults());
         }
         match toml::from_str(text) {
             Ok(desc) => Ok(Self { checker, sound: Sound::all(desc) }),

@@ -1,9 +1,13 @@
 //! Rendering to an error and to a time.
 
+use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use glam::DVec2;
-use whitted::render::Goal;
+use whitted::Rgb;
+use whitted::film::Tile;
+use whitted::render::{Block, Goal, RenderOptions, Sink, render, render_blocks};
+use whitted::scene::load_builtin;
 
 use super::{Seen, picture_of};
 
@@ -55,4 +59,58 @@ fn a_time_limit_gives_a_picture_however_short() {
     assert_eq!(picture.samples.iter().max(), Some(&64));
     let most = picture_of(&rings, 64, "adaptive:0,64", Goal::Mode);
     assert!(picture.estimated_rmse() < 1.5 * most.estimated_rmse());
+}
+
+/// Keeps every look at a picture on its way, and its end.
+#[derive(Default)]
+struct Looks {
+    seen: Mutex<Vec<(Vec<Rgb>, Vec<u32>)>>,
+    end: Mutex<Vec<Rgb>>,
+    /// After how many looks it is stopped.
+    most: usize,
+}
+
+impl Sink for Looks {
+    fn put(&self, block: Block) {
+        *self.end.lock().expect("no panic") = block.colors;
+    }
+
+    fn show(&self, _: &Tile, colors: &[Rgb], samples: &[u32]) {
+        self.seen.lock().expect("no panic").push((colors.to_vec(), samples.to_vec()));
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.seen.lock().expect("no panic").len() >= self.most
+    }
+}
+
+/// Oracle: a picture with many rays in each pixel, which every look is nearer to than the one before.
+#[test]
+fn a_picture_is_shown_on_its_way_to_an_error_nearer_and_nearer() {
+    let scene = load_builtin("assignment").expect("a scene");
+    let with = |aa: &str, goal| RenderOptions {
+        size: Some([60, 40]),
+        aa: aa.parse().expect(aa),
+        goal,
+        ..RenderOptions::default()
+    };
+    let truth = render(&scene, &with("grid:16", Goal::Mode), &|_| ()).expect("rendered").film;
+    let off = |colors: &[Rgb]| -> f32 {
+        colors.iter().zip(truth.pixels()).map(|(a, b)| (*a - *b).length_squared()).sum()
+    };
+    let options = with("adaptive:0,1024", Goal::Error(0.5));
+    let to_its_end = Looks { most: usize::MAX, ..Looks::default() };
+    render_blocks(&scene, &options, &to_its_end).expect("rendered");
+    let looks = to_its_end.seen.into_inner().expect("no panic");
+    assert!(looks.len() >= 3 && looks[0].1.iter().all(|&rays| rays == 1), "{}", looks.len());
+    let mut errors: Vec<f32> = looks.iter().map(|(colors, _)| off(colors)).collect();
+    errors.push(off(&to_its_end.end.into_inner().expect("no panic")));
+    assert!(errors.is_sorted_by(|a, b| b <= &(a * 1.02)), "{errors:?}");
+    assert!(errors[errors.len() - 1] < 0.1 * errors[0], "{errors:?}");
+    // Stopped, it is what was shown last, or somewhat better.
+    let stopped = Looks { most: 2, ..Looks::default() };
+    render_blocks(&scene, &options, &stopped).expect("rendered");
+    let looks = stopped.seen.into_inner().expect("no panic");
+    assert_eq!(looks.len(), 2);
+    assert!(off(&stopped.end.into_inner().expect("no panic")) <= off(&looks[1].0));
 }

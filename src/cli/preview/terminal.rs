@@ -1,9 +1,10 @@
-//! `--preview`: the picture in the terminal, while it is rendered.
+//! The picture in a terminal.
 
 use std::fmt::Write as _;
 use std::io::{self, IsTerminal, Write};
 
 use terminal_size::{Height, Width, terminal_size_of};
+use whitted::checkpoint::Job;
 use whitted::film::Film;
 use whitted::film::encode::to_srgb8;
 
@@ -15,15 +16,15 @@ const USUAL: [u32; 2] = [80, 24];
 const FREE_ROWS: u32 = 2;
 
 /// A picture in a terminal, drawn anew over itself.
-pub(crate) struct Preview {
+pub(crate) struct Terminal {
     room: [u32; 2],
     /// Rows that were drawn, over which the next picture goes.
     drawn: u32,
 }
 
-impl Preview {
-    /// A preview on standard error, if that is a terminal that can show one.
-    pub(crate) fn on_terminal() -> Option<Self> {
+impl Terminal {
+    /// Standard error, if that is a terminal that can show a picture.
+    pub(crate) fn on_stderr() -> Option<Self> {
         let can_draw = std::env::var_os("TERM").is_none_or(|name| name != "dumb");
         if !io::stderr().is_terminal() || !can_draw {
             return None;
@@ -33,17 +34,18 @@ impl Preview {
     }
 
     /// What draws the film over the one before, with a line below it.
-    pub(crate) fn frame(&mut self, film: &Film, line: &str) -> String {
+    fn frame(&mut self, film: &Film, line: &str) -> String {
         let (picture, rows) = half_blocks(film, self.room);
         let up = if self.drawn > 0 { format!("\x1b[{}A\r", self.drawn) } else { String::new() };
         self.drawn = rows + 1;
         format!("{up}{picture}\x1b[2K{line}\n")
     }
-}
 
-/// Sends a frame to the terminal; nobody is left to tell if that fails.
-pub(crate) fn show(frame: &str) {
-    let _ = io::stderr().lock().write_all(frame.as_bytes());
+    /// Draws what there is of the picture, and how much that is; nobody is left to tell if that fails.
+    pub(crate) fn draw(&mut self, job: &Job, percent: u64) {
+        let frame = job.with_film(|film| self.frame(film, &format!("{percent} %")));
+        let _ = io::stderr().lock().write_all(frame.as_bytes());
+    }
 }
 
 /// Columns and rows of the terminal.
@@ -86,7 +88,7 @@ mod tests {
     #[test]
     fn frames_go_over_each_other() {
         let film = Film::new(4, 4);
-        let mut preview = Preview { room: [80, 22], drawn: 0 };
+        let mut preview = Terminal { room: [80, 22], drawn: 0 };
         let first = preview.frame(&film, "0 %");
         assert!(!first.contains("A\r") && first.ends_with("m\n\x1b[2K0 %\n"), "{first:?}");
         let second = preview.frame(&film, "1 %");

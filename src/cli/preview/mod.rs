@@ -1,0 +1,39 @@
+//! `--preview`: the picture while it is rendered, in a window or in the terminal.
+
+mod terminal;
+
+pub(crate) use terminal::Terminal;
+
+use super::args::RenderArgs;
+use super::streams;
+use super::view::PreviewWindow;
+
+/// Where the picture is shown while it is rendered.
+pub(crate) enum Preview {
+    /// Nowhere.
+    None,
+    /// In a terminal.
+    Terminal(Terminal),
+    /// In a window.
+    Window(Box<PreviewWindow>),
+}
+
+impl Preview {
+    /// A window if there is a display for it, else the terminal if it can show pictures, if a preview is wanted.
+    pub(crate) fn open(args: &RenderArgs) -> Self {
+        if !args.preview {
+            return Self::None;
+        }
+        if let Some(window) = PreviewWindow::open() {
+            return Self::Window(Box::new(window));
+        }
+        if let Some(terminal) = Terminal::on_stderr() {
+            return Self::Terminal(terminal);
+        }
+        let place = if cfg!(feature = "view") { "no display, and " } else { "" };
+        streams::note(&format!(
+            "warning: --preview: there is {place}no terminal at standard error that shows pictures; rendering without"
+        ));
+        Self::None
+    }
+}

@@ -1,0 +1,113 @@
+//! What is done beside a render: checkpoints, what is said of a signal, the preview in a terminal.
+
+use std::{
+    path::PathBuf,
+    sync::{
+        Condvar, Mutex, PoisonError,
+        atomic::{AtomicBool, AtomicU64, Ordering},
+    },
+    time::{Duration, Instant},
+};
+
+use whitted::checkpoint::{Checkpoint, Job};
+use whitted::render::Progress;
+
+use super::preview::Terminal;
+
+/// How often a signal is looked for.
+const WATCH: Duration = Duration::from_millis(100);
+/// How often the preview is drawn.
+const PREVIEW: Duration = Duration::from_millis(300);
+
+/// The checkpoint of a picture.
+pub(crate) struct Kept {
+    /// Where it is to be; nowhere if the picture keeps none.
+    pub(crate) path: Option<PathBuf>,
+    /// Once there is one.
+    pub(crate) checkpoint: Option<Checkpoint>,
+}
+
+/// How far a render is, for whoever shows it.
+#[derive(Debug, Default)]
+pub(crate) struct Course {
+    percent: AtomicU64,
+    has_ended: Mutex<bool>,
+    ended: Condvar,
+}
+
+impl Course {
+    pub(crate) fn report(&self, progress: Progress) {
+        self.percent.store(100 * progress.done / progress.total.max(1), Ordering::Relaxed);
+    }
+
+    pub(crate) fn percent(&self) -> u64 {
+        self.percent.load(Ordering::Relaxed)
+    }
+
+    /// The render is over.
+    pub(crate) fn end(&self) {
+        *self.has_ended.lock().unwrap_or_else(PoisonError::into_inner) = true;
+        self.ended.notify_all();
+    }
+
+    #[cfg(feature = "view")]
+    pub(crate) fn has_ended(&self) -> bool {
+        *self.has_ended.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Waits for the end, but not longer than `time`; whether it came.
+    fn wait(&self, time: Duration) -> bool {
+        let guard = self.has_ended.lock().unwrap_or_else(PoisonError::into_inner);
+        let waited = self.ended.wait_timeout_while(guard, time, |has_ended| !*has_ended);
+        *waited.unwrap_or_else(PoisonError::into_inner).0
+    }
+}
+
+/// Who looks after a render.
+pub(crate) struct Watcher<'a> {
+    pub(crate) job: &'a Job<'a>,
+    pub(crate) course: &'a Course,
+    /// Whether a signal came.
+    pub(crate) stop: &'a AtomicBool,
+    /// Between two checkpoints.
+    pub(crate) interval: Duration,
+    /// What is said when a signal comes.
+    pub(crate) stopping: &'a str,
+    /// Tells the user.
+    pub(crate) note: &'a (dyn Fn(&str) + Sync),
+}
+
+impl Watcher<'_> {
+    /// Watches until the render ends.
+    pub(crate) fn watch(&self, kept: &mut Kept, mut terminal: Option<&mut Terminal>) {
+        let (mut saved, mut drawn) = (Instant::now(), Instant::now());
+        let (mut has_told, mut has_failed) = (false, false);
+        while !self.course.wait(WATCH) {
+            if let Some(terminal) = terminal.as_deref_mut()
+                && drawn.elapsed() >= PREVIEW
+            {
+                terminal.draw(self.job, self.course.percent());
+                drawn = Instant::now();
+            }
+            if self.stop.load(Ordering::Relaxed) && !has_told {
+                has_told = true;
+                (self.note)(self.stopping);
+            }
+            if let Kept { path: Some(path), checkpoint } = kept
+                && saved.elapsed() >= self.interval
+            {
+                let done = self.job.save(checkpoint, path);
+                saved = Instant::now();
+                if let Err(error) = &done
+                    && !has_failed
+                {
+                    (self.note)(&format!("warning: no checkpoint for now: {error}"));
+                }
+                has_failed = done.is_err();
+            }
+        }
+        if let Some(terminal) = terminal {
+            terminal.draw(self.job, self.course.percent());
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! Wrong usage: one line, code 2, nothing written.
+
+use super::assert_refused;
+use crate::program::{folder, names_in, run};
+
+#[test]
+fn bad_values_are_refused_on_one_line_before_anything_is_written() {
+    let whole = "give a whole number from 1";
+    let cases: &[(&[&str], &[&str])] = &[
+        (&["--size", "0x0"], &["--size", "at least 1x1"]),
+        (&["--size", "640"], &["--size", "such as 640x480"]),
+        (&["--size", "ax4"], &["--size", "such as 640x480"]),
+        (&["--size=-4x4"], &["--size", "such as 640x480"]),
+        (&["--size", "100000x100000"], &["--size", "204.9 GiB", "at most 16.0 GiB"]),
+        (&["--size", "99999999999999999999x2"], &["--size", "more than", "at most 16.0 GiB"]),
+        (&["--aa", "grid:0"], &["--aa", "grid:0"]),
+        (&["--aa", "grid:65"], &["--aa", "64"]),
+        (&["--aa", "grid:99999999999"], &["--aa", "64"]),
+        (&["--aa", "grid:"], &["--aa"]),
+        (&["--aa", "blur"], &["--aa", "none", "grid"]),
+        (&["--threads", "0"], &["--threads", whole]),
+        (&["--threads", "99999999"], &["--threads", whole, "4096"]),
+        (&["--threads", "-1"], &["--threads", whole]),
+        (&["--depth", "0"], &["--depth", whole]),
+        (&["--depth", "x"], &["--depth", whole]),
+        (&["--aa", "adaptive:-1"], &["--aa", "adaptive:-1", "zero or more"]),
+        (&["--aa", "adaptive:nan"], &["--aa", "error in levels"]),
+        (&["--aa", "adaptive:1,0"], &["--aa", "from 1 to"]),
+        (&["--max-error", "-1"], &["--max-error", "from 0 to 255"]),
+        (&["--max-error", "nan"], &["--max-error", "from 0 to 255"]),
+        (&["--max-error", "1", "--aa", "grid:2"], &["--max-error", "grid:2", "adaptive"]),
+        (&["--max-error", "1", "--time-limit", "1"], &["--max-error", "--time-limit"]),
+        (&["--time-limit", "0"], &["--time-limit", "above 0"]),
+        (&["--time-limit", "inf"], &["--time-limit", "above 0"]),
+        (&["--time-limit", "1", "--aa", "none"], &["--time-limit", "none", "adaptive"]),
+        (&["--crop", "1,2,3"], &["--crop", "four whole numbers"]),
+        (&["--crop", "5,5,5,9"], &["--crop", "empty"]),
+        (&["--crop=-1,0,5,5"], &["--crop", "four whole numbers"]),
+        (&["--crop", "0,0,601,5"], &["--crop", "601", "600x600"]),
+        (&["--objects", "0"], &["--objects", whole]),
+        (&["--objects", "-5"], &["--objects", whole]),
+        (&["--objects", "50000001"], &["--objects", "50000000"]),
+        (&["--objects", "7"], &["assignment", "fixed number", "spheres"]),
+        (
+            &["--progress", "plan"],
+            &["--progress", "auto, bar, plain, json, openjd, none", "'plain'"],
+        ),
+        (&["--sise", "8x8"], &["--sise", "'--size'"]),
+        (&["--output"], &["--output"]),
+        (&["--quiet", "--quiet"], &["--quiet"]),
+        (&["one", "two"], &["two"]),
+        (&["nowhere"], &["nowhere", "assignment"]),
+        (&["two\nlines"], &["two\\nlines"]),
+        (&["-o", "picture"], &["picture", ".png"]),
+        (&["-o", "picture.tif"], &["picture.tif", ".png"]),
+        (&["-o", "-", "--stats", "-"], &["--output", "--stats"]),
+        (&["-o", "a.png", "--stats", "./a.png"], &["--output", "--stats", "same file"]),
+    ];
+    let folder = folder();
+    for (arguments, parts) in cases {
+        let arguments = [&["render"], *arguments].concat();
+        assert_refused(&run(folder.path(), &arguments), 2, parts);
+    }
+    assert_eq!(names_in(folder.path()), [""; 0]);
+}
+
+#[test]
+fn without_a_command_or_with_an_unknown_one_the_next_step_is_named() {
+    let folder = folder();
+    assert_refused(&run(folder.path(), &[]), 2, &["whitted render", "--help"]);
+    assert_refused(&run(folder.path(), &["rendr"]), 2, &["rendr", "'render'"]);
+    assert_refused(&run(folder.path(), &["zzz"]), 2, &["zzz", "--help"]);
+}
