@@ -12,7 +12,7 @@ use crate::{
         leaf::{Candidates, LeafRay},
         node::Content,
         simd::{Kernel, Simd},
-        target::{Target, triangle_crossing},
+        target::triangle_crossing,
         tree::Tree,
     },
     geometry::{
@@ -156,7 +156,7 @@ where
         simd: S,
         packet: &mut Packet,
         k: usize,
-        first: Target,
+        first: u32,
         candidates: &Candidates,
     ) {
         let Candidates { mut maybe, certain, .. } = *candidates;
@@ -164,15 +164,15 @@ where
         while maybe != 0 && packet.limit[k] >= 0.0 {
             let lane = maybe.trailing_zeros() & 7;
             maybe &= maybe - 1;
-            let target = first.lane(lane);
-            let number = self.accel.numbers[target.place as usize];
+            let place = first + lane;
+            let number = self.accel.numbers[place as usize];
             let certain = certain & 1 << lane != 0;
             if certain && number != left && (self.opaque)(number) {
                 packet.limit[k] = BLOCKED;
                 continue;
             }
-            match target.corners(self.tree).filter(|_| has_lanes()) {
-                None => self.test_each(simd, packet, target.place as usize, 1 << k),
+            match self.tree.corners(place).filter(|_| has_lanes()) {
+                None => self.test_each(simd, packet, place as usize, 1 << k),
                 // A ray never meets the triangle that it leaves.
                 Some(_) if number == left => {}
                 Some(corners) => {
@@ -195,21 +195,20 @@ where
     #[inline(always)]
     fn leaf(&mut self, simd: S, packet: &mut Packet, met: u64, leaf: Content) {
         match leaf {
-            Content::Spheres(block) => {
-                let block = &self.tree.spheres[block];
+            Content::Spheres(run) => {
+                let spheres = &self.tree.spheres;
                 for k in lanes(met) {
                     let ray = LeafRay::new(&packet.ray(k), 1.0);
-                    let candidates = block.sort_out(simd, &ray, packet.limit[k]);
-                    self.take(simd, packet, k, Target::sphere(block.first), &candidates);
+                    let candidates = spheres.sort_out(simd, run, &ray, packet.limit[k]);
+                    self.take(simd, packet, k, run.first, &candidates);
                 }
             }
-            Content::Triangles(block) => {
-                let block = &self.tree.triangles[block];
-                let first = Target::triangle(block.first, block.corners);
+            Content::Triangles(run) => {
+                let triangles = &self.tree.triangles;
                 for k in lanes(met) {
                     let ray = LeafRay::new(&packet.ray(k), 1.0);
-                    let candidates = block.sort_out(simd, &ray, packet.limit[k]);
-                    self.take(simd, packet, k, first, &candidates);
+                    let candidates = triangles.sort_out(simd, run, &ray, packet.limit[k]);
+                    self.take(simd, packet, k, run.first, &candidates);
                 }
             }
             Content::One(place) => self.test(simd, packet, place, met),
