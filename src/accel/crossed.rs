@@ -59,7 +59,7 @@ where
                 let leaf_ray = LeafRay::new(&tree_ray, end);
                 let (limit, left) = (tree_ray.end_above(end), Left::of(accel, ray));
                 let mut search = Search { test, tree, leaf_ray, left, limit, stopped: false };
-                walk::<S, false>(simd, &tree.nodes, tree.root, &tree_ray, &mut search);
+                walk::<S, false>(simd, tree, &tree_ray, &mut search);
                 search.stopped
             }
             Entry::Extreme => {

@@ -78,7 +78,7 @@ impl Kernel for Nearest<'_> {
                 Entry::Miss => {}
                 Entry::Ray(tree_ray) => {
                     let mut search = Search::new(accel, tree, ray, tree_ray, best);
-                    walk::<S, true>(simd, &tree.nodes, tree.root, &tree_ray, &mut search);
+                    walk::<S, true>(simd, tree, &tree_ray, &mut search);
                     best = search.finish(simd);
                 }
                 Entry::Extreme => {
