@@ -39,9 +39,9 @@ pub(super) struct LeafRay {
     /// One over the squared length of the direction.
     pub(super) inverse: f32,
     /// The length of the direction.
-    length: f32,
+    pub(super) length: f32,
     /// The end of the ray, rounded down.
-    end: f32,
+    pub(super) end: f32,
     /// The ray itself.
     #[cfg(feature = "leaf-study")]
     pub(super) ray: TreeRay,
@@ -50,8 +50,7 @@ pub(super) struct LeafRay {
 impl LeafRay {
     #[inline(always)]
     pub(super) fn new(ray: &TreeRay, end: f64) -> Self {
-        let [x, y, z] = ray.dir;
-        let square = x * x + (y * y + z * z);
+        let square = ray.square();
         Self {
             origin: ray.origin,
             dir: ray.dir,

@@ -6,8 +6,7 @@ use super::{FEWEST_LANES, GROUP, Packet, START_SLACK, Searches, Singles, has_lan
 use crate::{
     accel::{
         Accel,
-        leaf::{Candidates, LeafRay},
-        node::Content,
+        leaf::Candidates,
         simd::{Kernel, Simd},
         target::{prefetch, triangle_crossing},
         tree::Tree,
@@ -40,9 +39,9 @@ impl Kernel for NearestPacket<'_> {
         *hits = HitLanes::NONE;
         let (mut rates, mut starts) = ([0.0; LANES], [0.0; LANES]);
         for k in 0..LANES {
-            let (ray, searches) = (packet.ray(k), packet.limit[k] >= 0.0);
-            let along = limit_above(f64::from(packet.beam.along(ray.dir)));
-            let start = packet.beam.depth(ray.origin) + START_SLACK;
+            let searches = packet.limit[k] >= 0.0;
+            let along = limit_above(f64::from(packet.beam.along(packet.direction(k))));
+            let start = packet.beam.depth(packet.point(k)) + START_SLACK;
             rates[k] = if searches { along } else { 0.0 };
             starts[k] = if searches { start } else { f32::NEG_INFINITY };
         }
@@ -78,25 +77,6 @@ struct Nearest<'a> {
 }
 
 impl Nearest<'_> {
-    /// Tries the primitive in `place` with the rays of the lanes `met`.
-    #[inline(always)]
-    fn test<S: Simd>(&mut self, simd: S, packet: &mut Packet, place: usize, met: u64) {
-        let (number, shape) = (self.accel.numbers[place], &self.accel.shapes[place]);
-        let range = hull(met);
-        if met.count_ones() < FEWEST_LANES
-            || !has_lanes()
-            || !simd.cross_lanes(shape, self.rays, range.clone(), &mut self.crossed)
-        {
-            for k in lanes(met) {
-                for crossing in self.accel.crossings(simd, &self.rays.ray(k), place) {
-                    self.offer(packet, k, number, crossing);
-                }
-            }
-            return;
-        }
-        self.offer_lanes(packet, number, range);
-    }
-
     /// Decides a leaf's primitive, which the rays of the lanes `met` hit if `certain`.
     #[inline(always)]
     fn decide<S: Simd>(
@@ -153,11 +133,42 @@ impl Nearest<'_> {
         }
     }
 
-    /// Takes the candidates of a leaf for the ray of one lane.
-    ///
-    /// A pending hit loses to one that ends before it starts; where intervals overlap, both are decided.
+    /// Decides what is pending.
     #[inline(always)]
-    fn take<S: Simd>(
+    fn finish<S: Simd>(&mut self, simd: S, packet: &mut Packet) {
+        let pending = |k: usize| self.pending[k] != u32::MAX && self.from[k] <= packet.limit[k];
+        let mut open = (0..LANES).fold(0_u64, |open, k| open | u64::from(pending(k)) << k);
+        while open != 0 {
+            let place = self.pending[open.trailing_zeros() as usize];
+            let same = |k: usize| u64::from(self.pending[k] == place) << k;
+            let same = open & (0..LANES).fold(0, |all, k| all | same(k));
+            open &= !same;
+            self.decide(simd, packet, place, same, true);
+        }
+    }
+}
+
+impl<S: Simd> Searches<S> for Nearest<'_> {
+    #[inline(always)]
+    fn test(&mut self, simd: S, packet: &mut Packet, place: usize, met: u64) {
+        let (number, shape) = (self.accel.numbers[place], &self.accel.shapes[place]);
+        let range = hull(met);
+        if met.count_ones() < FEWEST_LANES
+            || !has_lanes()
+            || !simd.cross_lanes(shape, self.rays, range.clone(), &mut self.crossed)
+        {
+            for k in lanes(met) {
+                for crossing in self.accel.crossings(simd, &self.rays.ray(k), place) {
+                    self.offer(packet, k, number, crossing);
+                }
+            }
+            return;
+        }
+        self.offer_lanes(packet, number, range);
+    }
+
+    #[inline(always)]
+    fn take(
         &mut self,
         simd: S,
         packet: &mut Packet,
@@ -165,6 +176,7 @@ impl Nearest<'_> {
         first: u32,
         candidates: &Candidates,
     ) {
+        // A pending hit loses to one that ends before it starts; where intervals overlap, both are decided.
         let Candidates { mut maybe, certain, from, to } = *candidates;
         while maybe != 0 {
             let lane = maybe.trailing_zeros() & 7;
@@ -184,46 +196,6 @@ impl Nearest<'_> {
             (self.pending[k], self.from[k]) = (place, from);
             packet.limit[k] = packet.limit[k].min(to);
             prefetch(simd, self.accel, self.tree, place);
-        }
-    }
-
-    /// Decides what is pending.
-    #[inline(always)]
-    fn finish<S: Simd>(&mut self, simd: S, packet: &mut Packet) {
-        let pending = |k: usize| self.pending[k] != u32::MAX && self.from[k] <= packet.limit[k];
-        let mut open = (0..LANES).fold(0_u64, |open, k| open | u64::from(pending(k)) << k);
-        while open != 0 {
-            let place = self.pending[open.trailing_zeros() as usize];
-            let same = |k: usize| u64::from(self.pending[k] == place) << k;
-            let same = open & (0..LANES).fold(0, |all, k| all | same(k));
-            open &= !same;
-            self.decide(simd, packet, place, same, true);
-        }
-    }
-}
-
-impl<S: Simd> Searches<S> for Nearest<'_> {
-    #[inline(always)]
-    fn leaf(&mut self, simd: S, packet: &mut Packet, met: u64, leaf: Content) {
-        match leaf {
-            Content::Spheres(run) => {
-                let spheres = &self.tree.spheres;
-                for k in lanes(met) {
-                    let ray = LeafRay::new(&packet.ray(k), f64::INFINITY);
-                    let candidates = spheres.sort_out(simd, run, &ray, packet.limit[k]);
-                    self.take(simd, packet, k, run.first, &candidates);
-                }
-            }
-            Content::Triangles(run) => {
-                let triangles = &self.tree.triangles;
-                for k in lanes(met) {
-                    let ray = LeafRay::new(&packet.ray(k), f64::INFINITY);
-                    let candidates = triangles.sort_out(simd, run, &ray, packet.limit[k]);
-                    self.take(simd, packet, k, run.first, &candidates);
-                }
-            }
-            Content::One(place) => self.test(simd, packet, place, met),
-            Content::Node(_) => {}
         }
     }
 
