@@ -6,6 +6,9 @@ use super::{
     simd::Simd,
 };
 
+/// Numbers in a line of the cache.
+const LINE: usize = 16;
+
 /// Leaves filled by one thread.
 const CHUNK: usize = 1024;
 
@@ -33,6 +36,15 @@ impl<const N: usize> Rows<N> {
     /// The memory of all, in bytes.
     pub(super) fn bytes(&self) -> usize {
         size_of_val(self.numbers.as_slice())
+    }
+
+    /// Asks for the memory of a leaf.
+    #[inline(always)]
+    pub(super) fn prefetch<S: Simd>(&self, simd: S, run: Run) {
+        let start = N * (run.first - self.base) as usize;
+        for k in (0..N * run.count as usize).step_by(LINE) {
+            simd.prefetch(&self.numbers[start + k]);
+        }
     }
 
     /// The rows of a leaf.

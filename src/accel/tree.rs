@@ -75,11 +75,22 @@ impl Tree {
         }
     }
 
-    /// Asks for the memory of a child that is visited later, if it is a node; to do so for leaves, too, was slower.
+    /// Asks for the memory of a child that is visited later, if it is a node; for a single ray, to do so for leaves, too, was slower.
     #[inline(always)]
-    pub(super) fn prefetch<S: Simd>(&self, simd: S, child: Child) {
+    pub(super) fn prefetch_node<S: Simd>(&self, simd: S, child: Child) {
         if let Content::Node(k) = child.content() {
             simd.prefetch(&self.nodes[k]);
+        }
+    }
+
+    /// Asks for the memory of a child that is visited later.
+    #[inline(always)]
+    pub(super) fn prefetch<S: Simd>(&self, simd: S, child: Child) {
+        match child.content() {
+            Content::Node(k) => simd.prefetch(&self.nodes[k]),
+            Content::Spheres(run) => self.spheres.rows.prefetch(simd, run),
+            Content::Triangles(run) => self.triangles.rows.prefetch(simd, run),
+            Content::One(_) => {}
         }
     }
 

@@ -155,20 +155,20 @@ pub(super) fn walk<S: Simd, const SORTED: bool>(
                 let b = key(enter[second], node.children[second]);
                 if met == 0 {
                     stack.push(a.max(b));
-                    tree.prefetch(simd, Child::from_word(a.max(b) as u32));
+                    tree.prefetch_node(simd, Child::from_word(a.max(b) as u32));
                     child = Child::from_word(a.min(b) as u32);
                     continue;
                 }
                 let base = stack.len;
                 stack.push(a.max(b));
                 stack.push(a.min(b));
-                tree.prefetch(simd, node.children[first]);
-                tree.prefetch(simd, node.children[second]);
+                tree.prefetch_node(simd, node.children[first]);
+                tree.prefetch_node(simd, node.children[second]);
                 while met != 0 {
                     let next = (met.trailing_zeros() & 7) as usize;
                     met &= met - 1;
                     stack.push(key(enter[next], node.children[next]));
-                    tree.prefetch(simd, node.children[next]);
+                    tree.prefetch_node(simd, node.children[next]);
                     if SORTED {
                         stack.sink(base);
                     }

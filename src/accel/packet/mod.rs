@@ -297,6 +297,7 @@ impl Packet {
                     let slot = (met.trailing_zeros() & 7) as usize;
                     met &= met - 1;
                     let child = tree.nodes[k].children[slot];
+                    tree.prefetch(simd, child);
                     let next =
                         Visit { enter: enter[slot], child, node: k as u32, slot: slot as u32 };
                     // Nearer children on top.
