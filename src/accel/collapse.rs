@@ -2,11 +2,11 @@
 //!
 //! What becomes a node and what a leaf is decided by the [`plan`](super::plan), whose choices are read back here.
 
-use std::ops::Range;
+use rayon::prelude::*;
 
 use super::{
     build::{Binary, corners},
-    node::{Child, Content, Node, WIDTH},
+    node::{Child, Content, Node, Run, WIDTH},
     plan::{Plans, split},
 };
 use crate::geometry::Shape;
@@ -38,48 +38,38 @@ pub(super) struct Wide {
     pub(super) nodes: Vec<Node>,
     /// Where to start.
     pub(super) root: Child,
-    /// The primitives in the tree's order, as indices of the binary tree.
+    /// The primitives in the tree's order, as indices of the binary tree: first all spheres, then all triangles, then the
+    /// others, and the primitives of a leaf side by side.
     pub(super) order: Vec<u32>,
-    /// Where each block of spheres starts in the order, and how many there are.
+    /// The leaves of spheres, in that order.
     pub(super) sphere_runs: Vec<Run>,
-    /// The same of triangles.
+    /// The leaves of triangles.
     pub(super) triangle_runs: Vec<Run>,
     /// The number of nodes on the longest way down.
     pub(super) depth: usize,
 }
 
-/// Some consecutive primitives in the tree's order.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Run {
-    /// The first.
-    pub(super) first: u32,
-    /// How many.
-    pub(super) count: u32,
-}
-
-impl Run {
-    pub(super) fn places(self) -> Range<usize> {
-        self.first as usize..(self.first + self.count) as usize
-    }
-}
-
 /// Plans and builds the wide tree; `kinds` are those of the primitives.
 pub(super) fn collapse(binary: Binary, kinds: &[Kind]) -> Wide {
     let plans = Plans::of(&binary, kinds);
-    Collapse { binary, plans }.build()
+    let count = |kind: Kind| kinds.par_iter().filter(|k| **k == kind).count();
+    let (spheres, triangles) = (count(Kind::Sphere), count(Kind::Triangle));
+    Collapse { binary, plans, next: [0, spheres, spheres + triangles] }.build()
 }
 
 struct Collapse {
     binary: Binary,
     plans: Plans,
+    /// Where the next sphere, triangle and other primitive goes in the order.
+    next: [usize; 3],
 }
 
 impl Collapse {
-    fn build(&self) -> Wide {
+    fn build(mut self) -> Wide {
         let mut wide = Wide {
             nodes: Vec::new(),
             root: Child::NONE,
-            order: Vec::with_capacity(self.binary.indices.len()),
+            order: vec![0; self.binary.indices.len()],
             sphere_runs: Vec::new(),
             triangle_runs: Vec::new(),
             depth: 1,
@@ -135,24 +125,31 @@ impl Collapse {
     }
 
     /// Puts the primitives of `node` next in the order, and returns the leaf that holds them.
-    fn leaf(&self, node: u32, wide: &mut Wide) -> Child {
-        let first = wide.order.len();
+    fn leaf(&mut self, node: u32, wide: &mut Wide) -> Child {
+        let kind = self.plans.get(node).kind;
+        let next = &mut self.next[kind as usize];
+        let first = *next;
         let mut todo = vec![node];
         while let Some(k) = todo.pop() {
             let node = &self.binary.nodes[k as usize];
             if node.is_leaf() {
-                wide.order.push(self.binary.indices[node.first_index as usize]);
+                wide.order[*next] = self.binary.indices[node.first_index as usize];
+                *next += 1;
             } else {
                 todo.extend([node.first_index + 1, node.first_index]);
             }
         }
-        let run = Run { first: first as u32, count: (wide.order.len() - first) as u32 };
-        let (content, runs): (fn(usize) -> Content, _) = match self.plans.get(node).kind {
-            Kind::Other => return Child::new(Content::One(first)),
-            Kind::Sphere => (Content::Spheres, &mut wide.sphere_runs),
-            Kind::Triangle => (Content::Triangles, &mut wide.triangle_runs),
-        };
-        runs.push(run);
-        Child::new(content(runs.len() - 1))
+        let run = Run { first: first as u32, count: (*next - first) as u32 };
+        Child::new(match kind {
+            Kind::Sphere => {
+                wide.sphere_runs.push(run);
+                Content::Spheres(run)
+            }
+            Kind::Triangle => {
+                wide.triangle_runs.push(run);
+                Content::Triangles(run)
+            }
+            Kind::Other => Content::One(first),
+        })
     }
 }

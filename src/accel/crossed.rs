@@ -8,7 +8,7 @@ use super::{
     leaf::{Candidates, LeafRay},
     node::Content,
     simd::{Kernel, Simd},
-    target::{Left, Target, triangle_crossing},
+    target::{Left, triangle_crossing},
     tree::Tree,
     walk::{Visitor, walk},
 };
@@ -59,14 +59,14 @@ where
                 let leaf_ray = LeafRay::new(&tree_ray, end);
                 let (limit, left) = (tree_ray.end_above(end), Left::of(accel, ray));
                 let mut search = Search { test, tree, leaf_ray, left, limit, stopped: false };
-                walk::<S, false>(simd, &tree.nodes, tree.root, &tree_ray, &mut search);
+                walk::<S, false>(simd, tree, &tree_ray, &mut search);
                 search.stopped
             }
             Entry::Extreme => {
                 let mut stopped = false;
                 let origin = tree.frame.point(ray.origin);
                 extreme::walk(&tree.nodes, tree.root, ray, origin, |leaf| {
-                    stopped = tree.places(leaf).any(|place| test.test(simd, place));
+                    stopped = Tree::places(leaf).any(|place| test.test(simd, place));
                     stopped
                 });
                 stopped
@@ -123,18 +123,17 @@ where
     /// Whether one of the candidates of a leaf whose primitives start at `first` stops the ray: a certain hit of an opaque one does
     /// without further ado.
     #[inline(always)]
-    fn take<S: Simd>(&mut self, simd: S, first: Target, candidates: &Candidates) -> bool {
+    fn take<S: Simd>(&mut self, simd: S, first: u32, candidates: &Candidates) -> bool {
         let Candidates { mut maybe, certain, .. } = *candidates;
         while maybe != 0 {
             let lane = maybe.trailing_zeros() & 7;
             maybe &= maybe - 1;
-            let target = first.lane(lane);
-            let place = target.place as usize;
+            let place = (first + lane) as usize;
             let certain = certain & 1 << lane != 0;
             if certain && (self.test.opaque)(self.test.accel.numbers[place]) {
                 return true;
             }
-            let stopped = match target.corners(self.tree) {
+            let stopped = match self.tree.corners(place as u32) {
                 None => self.test.test(simd, place),
                 Some(corners) => {
                     let crossing = triangle_crossing(simd, corners, self.test.ray, certain);
@@ -174,17 +173,17 @@ where
             }
         }
         self.stopped = match leaf {
-            Content::Spheres(k) => {
-                let block = &self.tree.spheres[k];
-                let mut candidates = block.sort_out(simd, &self.leaf_ray, self.limit);
-                self.left.settle_round(block.first, &mut candidates);
-                self.take(simd, Target::sphere(block.first), &candidates)
+            Content::Spheres(run) => {
+                let spheres = &self.tree.spheres;
+                let mut candidates = spheres.sort_out(simd, run, &self.leaf_ray, self.limit);
+                self.left.settle_round(run.first, &mut candidates);
+                self.take(simd, run.first, &candidates)
             }
-            Content::Triangles(k) => {
-                let block = &self.tree.triangles[k];
-                let mut candidates = block.sort_out(simd, &self.leaf_ray, self.limit);
-                self.left.settle_flat(block.first, &mut candidates);
-                self.take(simd, Target::triangle(block.first, block.corners), &candidates)
+            Content::Triangles(run) => {
+                let triangles = &self.tree.triangles;
+                let mut candidates = triangles.sort_out(simd, run, &self.leaf_ray, self.limit);
+                self.left.settle_flat(run.first, &mut candidates);
+                self.take(simd, run.first, &candidates)
             }
             Content::One(place) => self.test.test(simd, place),
             Content::Node(_) => false,

@@ -20,7 +20,7 @@ const BOX_PAD: f64 = 1.0 / (1 << 19) as f64;
 const BALL_RADIUS: f64 = 1.75;
 
 /// How much later than computed an end may be, in the parameter of the tree's frame, for a ray that walked here.
-const ARRIVAL_SLACK: f64 = 1.0 / (1 << 20) as f64;
+pub(super) const ARRIVAL_SLACK: f64 = 1.0 / (1 << 20) as f64;
 
 /// Beyond this distance (in the tree's frame, squared) a ray walks to the ball first.
 pub(super) const NEAR_SQUARED: f64 = 4.0;
@@ -196,11 +196,11 @@ impl TreeRay {
         Self { origin, dir, rate, arrival, slack }
     }
 
-    /// The ray with these, which arrives at `late` plus [`slack`](Self::slack), or starts here if that is 0.
+    /// The squared length of the direction.
     #[inline(always)]
-    pub(super) fn again(origin: [f32; 3], dir: [f32; 3], rate: f64, late: f64) -> Self {
-        let slack = if late == 0.0 { 0.0 } else { ARRIVAL_SLACK };
-        Self { origin, dir, rate, arrival: late + slack, slack }
+    pub(super) fn square(&self) -> f32 {
+        let [x, y, z] = self.dir;
+        x * x + (y * y + z * z)
     }
 
     /// The world's parameter `t` here, rounded up and with room for the error of the arrival.

@@ -10,7 +10,9 @@
 use glam::DVec3;
 
 use super::{
-    frame::{TreeRay, above, below},
+    frame::{TreeRay, above},
+    node::Run,
+    rows::Rows,
     simd::{Lanes, Simd},
 };
 
@@ -37,9 +39,9 @@ pub(super) struct LeafRay {
     /// One over the squared length of the direction.
     pub(super) inverse: f32,
     /// The length of the direction.
-    length: f32,
+    pub(super) length: f32,
     /// The end of the ray, rounded down.
-    end: f32,
+    pub(super) end: f32,
     /// The ray itself.
     #[cfg(feature = "leaf-study")]
     pub(super) ray: TreeRay,
@@ -48,8 +50,7 @@ pub(super) struct LeafRay {
 impl LeafRay {
     #[inline(always)]
     pub(super) fn new(ray: &TreeRay, end: f64) -> Self {
-        let [x, y, z] = ray.dir;
-        let square = x * x + (y * y + z * z);
+        let square = ray.square();
         Self {
             origin: ray.origin,
             dir: ray.dir,
@@ -87,42 +88,24 @@ pub(super) fn sub<S: Simd>(simd: S, a: [S::F; 3], b: [S::F; 3]) -> [S::F; 3] {
     [simd.sub(a[0], b[0]), simd.sub(a[1], b[1]), simd.sub(a[2], b[2])]
 }
 
-#[inline(always)]
-pub(super) fn load<S: Simd>(simd: S, v: &[[f32; 8]; 3]) -> [S::F; 3] {
-    [simd.load(&v[0]), simd.load(&v[1]), simd.load(&v[2])]
-}
-
-/// Up to eight spheres.
-#[derive(Clone, Debug)]
-#[repr(C, align(64))]
+/// The leaves of spheres: centre and radius of each.
+#[derive(Debug)]
 pub(super) struct Spheres {
-    pub(super) center: [[f32; 8]; 3],
-    /// The square of a radius that is certainly too large; negative for a sphere that is not there.
-    pub(super) outer: [f32; 8],
-    /// The square of a radius that is certainly too small; negative if there is none.
-    inner: [f32; 8],
-    /// The place of the first, and how many there are.
-    pub(super) first: u32,
-    pub(super) count: u32,
+    pub(super) rows: Rows<4>,
+    /// By how much a radius may be off to either side.
+    margin: f32,
 }
 
 impl Spheres {
-    /// A block for primitives from the place `first` on.
-    pub(super) fn new(first: u32) -> Self {
-        Self { center: [[0.0; 8]; 3], outer: [-1.0; 8], inner: [-1.0; 8], first, count: 0 }
-    }
-
-    /// Adds a sphere; `pad` is what a box is enlarged by.
-    pub(super) fn push(&mut self, center: [f64; 3], radius: f64, pad: f64) {
-        let lane = self.count as usize;
-        self.count += 1;
-        // The perpendicular from the centre to the ray is off by up to 27 u across and 28 u along the ray: 2 pads.
-        let (large, small) = (radius + 2.0 * pad, radius - 2.0 * pad);
-        for (lanes, x) in self.center.iter_mut().zip(center) {
-            lanes[lane] = x as f32;
-        }
-        self.outer[lane] = above(large * large);
-        self.inner[lane] = if small > 0.0 { below(small * small) } else { -1.0 };
+    /// The leaves `runs` of spheres that are in their places here; boxes are enlarged by `pad`.
+    pub(super) fn new(runs: &[Run], pad: f64, sphere: impl Fn(u32) -> (DVec3, f64) + Sync) -> Self {
+        let rows = Rows::new(runs, |place| {
+            let (center, radius) = sphere(place);
+            [center.x as f32, center.y as f32, center.z as f32, radius as f32]
+        });
+        // The perpendicular from the centre to the ray is off by up to 27 u across and 28 u along the ray, what is made of the
+        // radius by 4 u: less than 2 pads.
+        Self { rows, margin: above(2.0 * pad) }
     }
 
     /// Sorts out the spheres.
@@ -130,9 +113,17 @@ impl Spheres {
     /// With c the centre seen from the origin and b = c·d/d·d, the ray passes the centre at b at the distance of
     /// q = c − b d, and is inside the sphere for √((r² − q·q)/d·d) to either side.
     #[inline(always)]
-    pub(super) fn sort_out<S: Simd>(&self, simd: S, ray: &LeafRay, limit: f32) -> Candidates {
+    pub(super) fn sort_out<S: Simd>(
+        &self,
+        simd: S,
+        run: Run,
+        ray: &LeafRay,
+        limit: f32,
+    ) -> Candidates {
+        let leaf = self.rows.leaf(run);
+        let (radius, margin) = (leaf.row(simd, 3), simd.splat(self.margin));
         let (dir, inverse) = (splat(simd, ray.dir), simd.splat(ray.inverse));
-        let c = sub(simd, load(simd, &self.center), splat(simd, ray.origin));
+        let c = sub(simd, leaf.rows(simd, 0), splat(simd, ray.origin));
         let b = simd.mul(dot(simd, c, dir), inverse);
         let q = [
             simd.neg_mul_add(b, dir[0], c[0]),
@@ -141,14 +132,18 @@ impl Spheres {
         ];
         let offset = dot(simd, q, q);
         // The root of a negative number is NaN; `min` and `max` hand on a NaN in their second place, which is a miss.
-        let gap = simd.sub(simd.load(&self.outer), offset);
+        let outer = simd.add(radius, margin);
+        let gap = simd.mul_sub(outer, outer, offset);
         let half = simd.sqrt(simd.mul(gap, inverse));
         let (enter, leave) = (simd.sub(b, half), simd.add(b, half));
-        let maybe = simd.le(simd.max(simd.splat(0.0), enter), simd.min(simd.splat(limit), leave));
+        let limit = simd.splat(limit);
+        let maybe = leaf.all() & simd.le(simd.max(simd.splat(0.0), enter), simd.min(limit, leave));
         if maybe == 0 {
             return Candidates::NONE;
         }
-        let gap = simd.sub(simd.load(&self.inner), offset);
+        // Negative if the sphere is smaller than its error: nothing is certain.
+        let inner = simd.sub(radius, margin);
+        let gap = simd.mul_sub(inner, simd.toggle_sign(inner, inner), offset);
         let late = simd.sub(b, simd.sqrt(simd.mul(gap, inverse)));
         let ahead = simd.le(simd.splat(f32::MIN_POSITIVE), enter);
         let certain = maybe & ahead & simd.le(late, simd.splat(ray.end));
@@ -156,45 +151,30 @@ impl Spheres {
     }
 }
 
-/// Up to eight triangles.
-#[derive(Clone, Debug)]
-#[repr(C, align(64))]
+/// The leaves of triangles: a corner, two edges from there, and the length of the longest.
+#[derive(Debug)]
 pub(super) struct Triangles {
-    pub(super) corner: [[f32; 8]; 3],
-    pub(super) edge1: [[f32; 8]; 3],
-    pub(super) edge2: [[f32; 8]; 3],
-    /// The longest edge of all.
-    size: f32,
-    /// What the errors below are multiplied by where the pad is larger than usual.
-    coarseness: f32,
-    /// The place of the first, and how many there are.
-    pub(super) first: u32,
-    pub(super) count: u32,
-    /// Where the tree has the corners of the first.
-    pub(super) corners: u32,
+    pub(super) rows: Rows<10>,
 }
 
 impl Triangles {
-    /// A block for primitives from the place `first` on, whose corners the tree has from `corners` on.
-    pub(super) fn new(first: u32, corners: u32) -> Self {
-        let zero = [[0.0; 8]; 3];
-        let (size, coarseness, count) = (0.0, 1.0, 0);
-        Self { corner: zero, edge1: zero, edge2: zero, size, coarseness, first, count, corners }
-    }
-
-    /// Adds a triangle; `coarseness` is how many times the usual pad a box is enlarged by.
-    pub(super) fn push(&mut self, corners: [DVec3; 3], coarseness: f64) {
-        let lane = self.count as usize;
-        self.count += 1;
-        let [a, b, c] = corners;
-        for (axis, x) in a.to_array().into_iter().enumerate() {
-            self.corner[axis][lane] = x as f32;
-            self.edge1[axis][lane] = (b - a).to_array()[axis] as f32;
-            self.edge2[axis][lane] = (c - a).to_array()[axis] as f32;
-        }
-        let longest = (b - a).length().max((c - a).length()).max((c - b).length());
-        self.size = self.size.max(above(longest));
-        self.coarseness = above(coarseness);
+    /// The leaves `runs` of triangles that have these corners by their places; `coarseness` is how many times the usual pad a box
+    /// is enlarged by.
+    pub(super) fn new(
+        runs: &[Run],
+        coarseness: f64,
+        corners: impl Fn(u32) -> [DVec3; 3] + Sync,
+    ) -> Self {
+        let rows = Rows::new(runs, |place| {
+            let [a, b, c] = corners(place);
+            let (u, v) = (b - a, c - a);
+            let longest = u.length().max(v.length()).max((c - b).length());
+            let [a, u, v] = [a, u, v].map(|x| x.as_vec3().to_array());
+            // What is larger than usual is as good as longer.
+            let size = above(longest * coarseness);
+            [a[0], a[1], a[2], u[0], u[1], u[2], v[0], v[1], v[2], size]
+        });
+        Self { rows }
     }
 
     /// Sorts out the triangles.
@@ -206,11 +186,18 @@ impl Triangles {
     /// Source: Möller & Trumbore, "Fast, minimum storage ray/triangle intersection", *Journal of Graphics Tools* 2(1),
     /// 1997.
     #[inline(always)]
-    pub(super) fn sort_out<S: Simd>(&self, simd: S, ray: &LeafRay, limit: f32) -> Candidates {
+    pub(super) fn sort_out<S: Simd>(
+        &self,
+        simd: S,
+        run: Run,
+        ray: &LeafRay,
+        limit: f32,
+    ) -> Candidates {
         const U: f32 = f32::EPSILON / 2.0;
-        let (edge1, edge2) = (load(simd, &self.edge1), load(simd, &self.edge2));
-        let dir = splat(simd, ray.dir);
-        let c = sub(simd, load(simd, &self.corner), splat(simd, ray.origin));
+        let leaf = self.rows.leaf(run);
+        let (edge1, edge2, size) = (leaf.rows(simd, 3), leaf.rows(simd, 6), leaf.row(simd, 9));
+        let (zero, dir) = (simd.splat(0.0), splat(simd, ray.dir));
+        let c = sub(simd, leaf.rows(simd, 0), splat(simd, ray.origin));
         let n = cross(simd, edge1, edge2);
         let r = cross(simd, c, dir);
         let signed = dot(simd, n, dir);
@@ -219,26 +206,25 @@ impl Triangles {
         let scaled_t = simd.toggle_sign(dot(simd, n, c), signed);
         let den = simd.toggle_sign(signed, signed);
         let rest = simd.add(simd.sub(den, v), minus_w);
-        let w = simd.sub(simd.splat(0.0), minus_w);
-        let inside = simd.min(simd.min(v, w), rest);
-        let area = self.size * self.size * self.coarseness;
-        let error = 128.0 * U * self.size * self.coarseness * ray.length;
+        let inside = simd.min(simd.min(v, simd.sub(zero, minus_w)), rest);
+        let area = simd.mul(size, size);
+        let error = simd.mul(size, simd.splat(128.0 * U * ray.length));
         // A ray in the frame is at most 4 long, however far its end is.
-        let t_error = 256.0 * U * area;
-        let reach = simd.mul_add(den, simd.splat(limit.min(4.0)), simd.splat(t_error));
-        let maybe = ((1 << self.count) - 1)
-            & simd.le(simd.splat(-error), inside)
-            & simd.le(simd.splat(-t_error), scaled_t)
+        let t_error = simd.mul(area, simd.splat(256.0 * U));
+        let reach = simd.mul_add(den, simd.splat(limit.min(4.0)), t_error);
+        let maybe = leaf.all()
+            & simd.le(simd.sub(zero, error), inside)
+            & simd.le(simd.sub(zero, t_error), scaled_t)
             & simd.le(scaled_t, reach);
         if maybe == 0 {
             return Candidates::NONE;
         }
-        let t_error = simd.splat(64.0 * U * area);
-        let den_error = simd.splat(16.0 * U * area * ray.length);
+        let t_error = simd.mul(area, simd.splat(64.0 * U));
+        let den_error = simd.mul(area, simd.splat(16.0 * U * ray.length));
         let from = simd.div(simd.sub(scaled_t, t_error), simd.add(den, den_error));
         let to = simd.div(simd.add(scaled_t, t_error), simd.sub(den, den_error));
         let certain = maybe
-            & simd.le(simd.splat(error), inside)
+            & simd.le(error, inside)
             & simd.le(simd.add(den_error, den_error), den)
             & simd.le(simd.splat(f32::MIN_POSITIVE), from)
             & simd.le(to, simd.splat(ray.end));

@@ -17,6 +17,7 @@ mod node;
 mod packet;
 mod plan;
 mod query;
+mod rows;
 mod simd;
 #[cfg(target_arch = "x86_64")]
 mod simd_x86;

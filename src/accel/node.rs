@@ -1,5 +1,7 @@
 //! The nodes of the tree: eight boxes side by side, so that one instruction tests a plane of each.
 
+use std::ops::Range;
+
 /// The most children of a node, and the most primitives of a leaf.
 pub(super) const WIDTH: usize = 8;
 
@@ -14,52 +16,69 @@ pub(super) struct Node {
     pub(super) children: [Child; WIDTH],
 }
 
-/// What a box holds: a kind in the upper two bits and where it is in the others.
+/// What a box holds: a kind in the upper two bits, for a leaf of several how many in the next three, and where in the others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(transparent)]
 pub(super) struct Child(u32);
+
+/// Some consecutive primitives, at least one and at most [`WIDTH`], in the order of the leaves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Run {
+    /// The place of the first.
+    pub(super) first: u32,
+    /// How many.
+    pub(super) count: u32,
+}
+
+impl Run {
+    pub(super) fn places(self) -> Range<usize> {
+        self.first as usize..(self.first + self.count) as usize
+    }
+}
 
 /// A [`Child`] taken apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Content {
     /// A node.
     Node(usize),
-    /// A block of spheres.
-    Spheres(usize),
-    /// A block of triangles.
-    Triangles(usize),
-    /// One primitive of any kind, by its place in the tree's order.
+    /// Spheres.
+    Spheres(Run),
+    /// Triangles.
+    Triangles(Run),
+    /// One primitive of any kind, by its place.
     One(usize),
 }
 
 impl Child {
-    const INDEX: u32 = (1 << 30) - 1;
+    const PLACE_BITS: u32 = 27;
+    const PLACE: u32 = (1 << Self::PLACE_BITS) - 1;
 
     /// The most things that can be told apart.
-    pub(super) const LIMIT: usize = Self::INDEX as usize;
+    pub(super) const LIMIT: usize = Self::PLACE as usize;
 
     /// Nothing; never met.
-    pub(super) const NONE: Self = Self(Self::INDEX);
+    pub(super) const NONE: Self = Self(Self::PLACE);
 
     pub(super) fn new(content: Content) -> Self {
-        let (tag, index) = match content {
-            Content::Node(k) => (0, k),
-            Content::Spheres(k) => (1, k),
-            Content::Triangles(k) => (2, k),
-            Content::One(k) => (3, k),
+        let (tag, count, place) = match content {
+            Content::Node(k) => (0, 1, k as u32),
+            Content::Spheres(Run { first, count }) => (1, count, first),
+            Content::Triangles(Run { first, count }) => (2, count, first),
+            Content::One(k) => (3, 1, k as u32),
         };
-        debug_assert!(index < Self::LIMIT, "the builder limits the number of primitives");
-        Self(tag << 30 | index as u32 & Self::INDEX)
+        debug_assert!(place < Self::PLACE, "the builder limits the number of primitives");
+        Self(tag << 30 | (count - 1) << Self::PLACE_BITS | place)
     }
 
     #[inline(always)]
     pub(super) fn content(self) -> Content {
-        let index = (self.0 & Self::INDEX) as usize;
+        let first = self.0 & Self::PLACE;
+        let run = Run { first, count: (self.0 >> Self::PLACE_BITS & 7) + 1 };
         match self.0 >> 30 {
-            0 => Content::Node(index),
-            1 => Content::Spheres(index),
-            2 => Content::Triangles(index),
-            _ => Content::One(index),
+            0 => Content::Node(first as usize),
+            1 => Content::Spheres(run),
+            2 => Content::Triangles(run),
+            _ => Content::One(first as usize),
         }
     }
 

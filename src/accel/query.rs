@@ -6,7 +6,7 @@ use super::{
     leaf::{Candidates, LeafRay},
     node::Content,
     simd::{Kernel, Simd},
-    target::{Left, Target, triangle_crossing},
+    target::{Left, prefetch, triangle_crossing},
     tree::Tree,
     walk::{Visitor, walk},
 };
@@ -78,13 +78,13 @@ impl Kernel for Nearest<'_> {
                 Entry::Miss => {}
                 Entry::Ray(tree_ray) => {
                     let mut search = Search::new(accel, tree, ray, tree_ray, best);
-                    walk::<S, true>(simd, &tree.nodes, tree.root, &tree_ray, &mut search);
+                    walk::<S, true>(simd, tree, &tree_ray, &mut search);
                     best = search.finish(simd);
                 }
                 Entry::Extreme => {
                     let origin = tree.frame.point(ray.origin);
                     extreme::walk(&tree.nodes, tree.root, ray, origin, |leaf| {
-                        tree.places(leaf).for_each(|place| best.test(simd, accel, ray, place));
+                        Tree::places(leaf).for_each(|place| best.test(simd, accel, ray, place));
                         false
                     });
                 }
@@ -97,13 +97,14 @@ impl Kernel for Nearest<'_> {
 /// A certain hit that has not been decided in double precision, because it may never matter.
 #[derive(Clone, Copy)]
 struct Pending {
-    target: Target,
+    /// The place of its primitive; beyond all if there is none.
+    place: u32,
     /// Its parameter in the tree's frame is not less than this.
     from: f32,
 }
 
 impl Pending {
-    const NONE: Self = Self { target: Target::NONE, from: f32::INFINITY };
+    const NONE: Self = Self { place: u32::MAX, from: f32::INFINITY };
 }
 
 #[derive(Clone, Copy)]
@@ -145,12 +146,12 @@ impl<'a> Search<'a> {
 
     /// Decides a leaf's primitive, which is hit if `certain`.
     #[inline(always)]
-    fn decide<S: Simd>(&mut self, simd: S, target: Target, certain: bool) {
-        match target.corners(self.tree) {
-            None => self.test(simd, target.place),
+    fn decide<S: Simd>(&mut self, simd: S, place: u32, certain: bool) {
+        match self.tree.corners(place) {
+            None => self.test(simd, place),
             Some(corners) => {
                 let crossing = triangle_crossing(simd, corners, self.ray, certain);
-                self.best.offer(crossing, self.accel, target.place as usize);
+                self.best.offer(crossing, self.accel, place as usize);
                 self.limit = self.limit.min(self.tree_ray.end_above(self.best.t));
             }
         }
@@ -160,40 +161,40 @@ impl<'a> Search<'a> {
     ///
     /// A pending hit loses to one that ends before it starts; where intervals overlap, both are decided.
     #[inline(always)]
-    fn take<S: Simd>(&mut self, simd: S, first: Target, candidates: &Candidates) {
+    fn take<S: Simd>(&mut self, simd: S, first: u32, candidates: &Candidates) {
         let Candidates { mut maybe, certain, from, to } = *candidates;
         while maybe != 0 {
             let lane = maybe.trailing_zeros() & 7;
             maybe &= maybe - 1;
-            let target = first.lane(lane);
+            let place = first + lane;
             if certain & 1 << lane == 0 {
-                self.decide(simd, target, false);
+                self.decide(simd, place, false);
                 continue;
             }
             let (from, to) = (from.0[lane as usize], to.0[lane as usize]);
             if from > self.limit {
                 continue;
             }
-            if to >= self.pending.from && !self.pending.target.is_none() {
-                self.decide(simd, self.pending.target, true);
+            if to >= self.pending.from && self.pending.place != u32::MAX {
+                self.decide(simd, self.pending.place, true);
             }
-            self.pending = Pending { target, from };
+            self.pending = Pending { place, from };
             self.limit = self.limit.min(to);
-            target.prefetch(simd, self.accel, self.tree);
+            prefetch(simd, self.accel, self.tree, place);
         }
     }
 
     #[inline(always)]
     pub(super) fn finish<S: Simd>(mut self, simd: S) -> Best {
-        let Pending { target, from } = self.pending;
-        if !target.is_none() && from <= self.limit {
+        let Pending { place, from } = self.pending;
+        if place != u32::MAX && from <= self.limit {
             #[cfg(feature = "leaf-study")]
             if super::study::is_naive() {
                 let crossing = self.leaf_ray.crossing(from);
-                self.best.offer(crossing, self.accel, target.place as usize);
+                self.best.offer(crossing, self.accel, place as usize);
                 return self.best;
             }
-            self.decide(simd, target, true);
+            self.decide(simd, place, true);
         }
         self.best
     }
@@ -214,7 +215,7 @@ impl<S: Simd> Visitor<S> for Search<'_> {
             super::study::Textbook::Hit(found) => {
                 return found.for_each(|place, from| {
                     if from < self.limit {
-                        self.pending = Pending { target: Target::sphere(place), from };
+                        self.pending = Pending { place, from };
                         self.limit = from;
                     }
                     false
@@ -222,17 +223,17 @@ impl<S: Simd> Visitor<S> for Search<'_> {
             }
         }
         match leaf {
-            Content::Spheres(k) => {
-                let block = &self.tree.spheres[k];
-                let mut candidates = block.sort_out(simd, &self.leaf_ray, self.limit);
-                self.left.settle_round(block.first, &mut candidates);
-                self.take(simd, Target::sphere(block.first), &candidates);
+            Content::Spheres(run) => {
+                let spheres = &self.tree.spheres;
+                let mut candidates = spheres.sort_out(simd, run, &self.leaf_ray, self.limit);
+                self.left.settle_round(run.first, &mut candidates);
+                self.take(simd, run.first, &candidates);
             }
-            Content::Triangles(k) => {
-                let block = &self.tree.triangles[k];
-                let mut candidates = block.sort_out(simd, &self.leaf_ray, self.limit);
-                self.left.settle_flat(block.first, &mut candidates);
-                self.take(simd, Target::triangle(block.first, block.corners), &candidates);
+            Content::Triangles(run) => {
+                let triangles = &self.tree.triangles;
+                let mut candidates = triangles.sort_out(simd, run, &self.leaf_ray, self.limit);
+                self.left.settle_flat(run.first, &mut candidates);
+                self.take(simd, run.first, &candidates);
             }
             Content::One(place) => self.test(simd, place as u32),
             Content::Node(_) => {}

@@ -5,52 +5,14 @@ use glam::DVec3;
 use super::{Accel, leaf::Candidates, simd::Simd, tree::Tree};
 use crate::geometry::{Crossing, Ray};
 
-/// A primitive of a leaf.
-#[derive(Clone, Copy)]
-pub(super) struct Target {
-    pub(super) place: u32,
-    /// Where the tree has its corners, if it is a triangle.
-    pub(super) corners: u32,
-}
-
-impl Target {
-    /// No primitive.
-    pub(super) const NONE: Self = Self::sphere(u32::MAX);
-
-    pub(super) const fn sphere(place: u32) -> Self {
-        Self { place, corners: u32::MAX }
+/// Asks for the memory that a decision about the primitive in `place` needs.
+#[inline(always)]
+pub(super) fn prefetch<S: Simd>(simd: S, accel: &Accel, tree: &Tree, place: u32) {
+    match tree.corners(place) {
+        Some(corners) => simd.prefetch(corners),
+        None => simd.prefetch(&accel.shapes[place as usize]),
     }
-
-    pub(super) const fn triangle(place: u32, corners: u32) -> Self {
-        Self { place, corners }
-    }
-
-    #[inline(always)]
-    pub(super) fn is_none(self) -> bool {
-        self.place == u32::MAX
-    }
-
-    /// The primitive `lane` places on in the same leaf.
-    #[inline(always)]
-    pub(super) fn lane(self, lane: u32) -> Self {
-        Self { place: self.place + lane, corners: self.corners.saturating_add(lane) }
-    }
-
-    /// Its corners, if it is a triangle.
-    #[inline(always)]
-    pub(super) fn corners(self, tree: &Tree) -> Option<&[DVec3; 3]> {
-        tree.corners.get(self.corners as usize)
-    }
-
-    /// Asks for the memory that a decision needs.
-    #[inline(always)]
-    pub(super) fn prefetch<S: Simd>(self, simd: S, accel: &Accel, tree: &Tree) {
-        match self.corners(tree) {
-            Some(corners) => simd.prefetch(corners),
-            None => simd.prefetch(&accel.shapes[self.place as usize]),
-        }
-        simd.prefetch(&accel.numbers[self.place as usize]);
-    }
+    simd.prefetch(&accel.numbers[place as usize]);
 }
 
 /// The crossing of `ray` with a triangle, which is crossed if `certain`; not the one that it leaves.

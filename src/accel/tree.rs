@@ -7,11 +7,12 @@ use rayon::prelude::*;
 
 use super::{
     build::{self, Division},
-    collapse::{Kind, Run, collapse},
+    collapse::{Kind, collapse},
     frame::Frame,
     huge,
     leaf::{Spheres, Triangles},
     node::{Child, Content, Node},
+    simd::Simd,
     walk::MAX_DEPTH,
 };
 use crate::geometry::Shape;
@@ -22,10 +23,10 @@ pub(super) struct Tree {
     pub(super) frame: Frame,
     pub(super) root: Child,
     pub(super) nodes: Vec<Node>,
-    pub(super) spheres: Vec<Spheres>,
-    pub(super) triangles: Vec<Triangles>,
+    pub(super) spheres: Spheres,
+    pub(super) triangles: Triangles,
     /// The corners of the triangles, exactly, in the order of the leaves.
-    pub(super) corners: Vec<[DVec3; 3]>,
+    corners: Vec<[DVec3; 3]>,
 }
 
 impl Tree {
@@ -40,102 +41,63 @@ impl Tree {
             wide = collapse(build::balanced(&boxes()), &kinds);
         }
         let order: Vec<u32> = wide.order.iter().map(|k| inside[*k as usize]).collect();
-        let leaves = Leaves { shapes, order: &order, frame: &frame };
-        let corners = leaves.corners(&wide.triangle_runs);
+        let shape = |place: u32| &shapes[order[place as usize] as usize];
+        let spheres = Spheres::new(&wide.sphere_runs, frame.pad(), |place| {
+            let Shape::Sphere(s) = shape(place) else { unreachable!("a leaf of spheres") };
+            (frame.point(s.center()), frame.length(s.radius()))
+        });
+        let triangles = Triangles::new(&wide.triangle_runs, frame.coarseness(), |place| {
+            corners_of(shape(place)).map(|v| frame.point(v))
+        });
+        let places = wide.triangle_runs.first().zip(wide.triangle_runs.last());
+        let places = places.map_or(0..0, |(a, b)| a.places().start..b.places().end);
+        let mut corners = huge::vec_with_capacity(places.len());
+        let numbers = order[places].par_iter();
+        numbers.map(|k| corners_of(&shapes[*k as usize])).collect_into_vec(&mut corners);
         let mut nodes = huge::vec_with_capacity(wide.nodes.len());
         nodes.append(&mut wide.nodes);
-        let tree = Self {
-            frame,
-            root: wide.root,
-            nodes,
-            spheres: leaves.spheres(&wide.sphere_runs),
-            triangles: leaves.triangles(&wide.triangle_runs, &corners),
-            corners,
-        };
+        let tree = Self { frame, root: wide.root, nodes, spheres, triangles, corners };
         Some((tree, order))
     }
 
     /// The memory of nodes and leaves, in bytes.
     pub(super) fn bytes(&self) -> usize {
-        let leaves = size_of_val(self.spheres.as_slice()) + size_of_val(self.triangles.as_slice());
+        let leaves = self.spheres.rows.bytes() + self.triangles.rows.bytes();
         size_of_val(self.nodes.as_slice()) + leaves + size_of_val(self.corners.as_slice())
     }
 
     /// The places of a leaf's primitives.
-    pub(super) fn places(&self, leaf: Content) -> Range<usize> {
-        let (first, count) = match leaf {
-            Content::Node(_) => (0, 0),
-            Content::Spheres(k) => (self.spheres[k].first, self.spheres[k].count),
-            Content::Triangles(k) => (self.triangles[k].first, self.triangles[k].count),
-            Content::One(k) => (k as u32, 1),
-        };
-        first as usize..(first + count) as usize
-    }
-}
-
-/// What the leaves are made from.
-struct Leaves<'a> {
-    shapes: &'a [Shape],
-    order: &'a [u32],
-    frame: &'a Frame,
-}
-
-impl Leaves<'_> {
-    fn shapes_of(&self, run: Run) -> impl Iterator<Item = &Shape> {
-        self.order[run.places()].iter().map(|k| &self.shapes[*k as usize])
-    }
-
-    fn spheres(&self, runs: &[Run]) -> Vec<Spheres> {
-        let mut blocks = huge::vec_with_capacity(runs.len());
-        runs.par_iter().map(|run| self.sphere_block(*run)).collect_into_vec(&mut blocks);
-        blocks
-    }
-
-    fn sphere_block(&self, run: Run) -> Spheres {
-        let mut block = Spheres::new(run.first);
-        for shape in self.shapes_of(run) {
-            if let Shape::Sphere(s) = shape {
-                let (center, radius) =
-                    (self.frame.point(s.center()), self.frame.length(s.radius()));
-                block.push(center.to_array(), radius, self.frame.pad());
-            }
+    pub(super) fn places(leaf: Content) -> Range<usize> {
+        match leaf {
+            Content::Node(_) => 0..0,
+            Content::Spheres(run) | Content::Triangles(run) => run.places(),
+            Content::One(place) => place..place + 1,
         }
-        block
     }
 
-    /// The corners of the triangles of all runs.
-    fn corners(&self, runs: &[Run]) -> Vec<[DVec3; 3]> {
-        let which: Vec<u32> =
-            runs.iter().flat_map(|run| &self.order[run.places()]).copied().collect();
-        let mut corners = huge::vec_with_capacity(which.len());
-        which
-            .par_iter()
-            .map(|k| corners_of(&self.shapes[*k as usize]))
-            .collect_into_vec(&mut corners);
-        corners
+    /// Asks for the memory of a child that is visited later, if it is a node; for a single ray, to do so for leaves, too, was slower.
+    #[inline(always)]
+    pub(super) fn prefetch_node<S: Simd>(&self, simd: S, child: Child) {
+        if let Content::Node(k) = child.content() {
+            simd.prefetch(&self.nodes[k]);
+        }
     }
 
-    /// The blocks of all runs, whose triangles have these `corners`.
-    fn triangles(&self, runs: &[Run], corners: &[[DVec3; 3]]) -> Vec<Triangles> {
-        let block = |run: &Run, start: u32| {
-            let mut block = Triangles::new(run.first, start);
-            for corners in &corners[start as usize..][..run.count as usize] {
-                block.push(corners.map(|v| self.frame.point(v)), self.frame.coarseness());
-            }
-            block
-        };
-        let starts = runs.iter().scan(0, |end, run| {
-            let start = *end;
-            *end += run.count;
-            Some(start)
-        });
-        let starts: Vec<u32> = starts.collect();
-        let mut blocks = huge::vec_with_capacity(runs.len());
-        runs.par_iter()
-            .zip(&starts)
-            .map(|(run, start)| block(run, *start))
-            .collect_into_vec(&mut blocks);
-        blocks
+    /// Asks for the memory of a child that is visited later.
+    #[inline(always)]
+    pub(super) fn prefetch<S: Simd>(&self, simd: S, child: Child) {
+        match child.content() {
+            Content::Node(k) => simd.prefetch(&self.nodes[k]),
+            Content::Spheres(run) => self.spheres.rows.prefetch(simd, run),
+            Content::Triangles(run) => self.triangles.rows.prefetch(simd, run),
+            Content::One(_) => {}
+        }
+    }
+
+    /// The corners of the primitive in `place`, if it is a triangle.
+    #[inline(always)]
+    pub(super) fn corners(&self, place: u32) -> Option<&[DVec3; 3]> {
+        self.corners.get(place.wrapping_sub(self.triangles.rows.base) as usize)
     }
 }
 
@@ -144,6 +106,6 @@ fn corners_of(shape: &Shape) -> [DVec3; 3] {
     match shape {
         Shape::Triangle(t) => t.vertices(),
         Shape::Face(f) => f.vertices(),
-        _ => unreachable!("blocks of triangles hold nothing else"),
+        _ => unreachable!("a leaf of triangles"),
     }
 }

@@ -10,6 +10,7 @@ use super::{
     frame::TreeRay,
     node::{Child, Content, Node, WIDTH},
     simd::Simd,
+    tree::Tree,
 };
 
 /// The most nodes from the root to a leaf; the builder keeps to it.
@@ -124,8 +125,7 @@ fn key(enter: f32, child: Child) -> u64 {
 #[inline(always)]
 pub(super) fn walk<S: Simd, const SORTED: bool>(
     simd: S,
-    nodes: &[Node],
-    root: Child,
+    tree: &Tree,
     ray: &TreeRay,
     visitor: &mut impl Visitor<S>,
 ) {
@@ -134,10 +134,10 @@ pub(super) fn walk<S: Simd, const SORTED: bool>(
     }
     let slabs = Slabs::new(simd, ray);
     let mut stack = Stack::new();
-    let mut child = root;
+    let mut child = tree.root;
     loop {
         if let Content::Node(k) = child.content() {
-            let node = &nodes[k];
+            let node = &tree.nodes[k];
             #[cfg(feature = "leaf-study")]
             super::study::count_node();
             let (mut met, enter) = slabs.test(simd, node, visitor.limit());
@@ -155,16 +155,20 @@ pub(super) fn walk<S: Simd, const SORTED: bool>(
                 let b = key(enter[second], node.children[second]);
                 if met == 0 {
                     stack.push(a.max(b));
+                    tree.prefetch_node(simd, Child::from_word(a.max(b) as u32));
                     child = Child::from_word(a.min(b) as u32);
                     continue;
                 }
                 let base = stack.len;
                 stack.push(a.max(b));
                 stack.push(a.min(b));
+                tree.prefetch_node(simd, node.children[first]);
+                tree.prefetch_node(simd, node.children[second]);
                 while met != 0 {
                     let next = (met.trailing_zeros() & 7) as usize;
                     met &= met - 1;
                     stack.push(key(enter[next], node.children[next]));
+                    tree.prefetch_node(simd, node.children[next]);
                     if SORTED {
                         stack.sink(base);
                     }

@@ -9,10 +9,9 @@ use crate::{
     accel::{
         Accel, crossed,
         frame::above,
-        leaf::{Candidates, LeafRay},
-        node::Content,
+        leaf::Candidates,
         simd::{Kernel, Simd},
-        target::{Target, triangle_crossing},
+        target::triangle_crossing,
         tree::Tree,
     },
     geometry::{
@@ -89,9 +88,36 @@ where
     B: Fn(u32) -> bool,
     V: FnMut(usize, u32, Crossing) -> ControlFlow<()>,
 {
-    /// Tries the primitive in `place` with the rays of the lanes `met`.
+    /// Tries the primitive in `place` with the rays of the lanes `met` one by one.
     #[inline(always)]
-    fn test<S: Simd>(&mut self, simd: S, packet: &mut Packet, place: usize, met: u64) {
+    fn test_each<S: Simd>(&mut self, simd: S, packet: &mut Packet, place: usize, met: u64) {
+        for k in lanes(met) {
+            let ray = self.rays.ray(k);
+            if self.lane_test(&ray, k).test(simd, place) {
+                packet.limit[k] = BLOCKED;
+            }
+        }
+    }
+
+    /// The test of primitives with the ray of a lane.
+    #[inline(always)]
+    fn lane_test<'t>(
+        &'t mut self,
+        ray: &'t Ray,
+        k: usize,
+    ) -> crossed::Test<'t, &'t B, VisitOf<'t, V>> {
+        let visit = VisitOf { visit: self.visit, lane: k };
+        crossed::Test { accel: self.accel, ray, end: 1.0, opaque: self.opaque, visit }
+    }
+}
+
+impl<S: Simd, B, V> Searches<S> for Blocks<'_, B, V>
+where
+    B: Fn(u32) -> bool,
+    V: FnMut(usize, u32, Crossing) -> ControlFlow<()>,
+{
+    #[inline(always)]
+    fn test(&mut self, simd: S, packet: &mut Packet, place: usize, met: u64) {
         let (number, shape) = (self.accel.numbers[place], &self.accel.shapes[place]);
         let own = self.rays.leaving(number);
         let (range, others) = (hull(met & !own), met & !own);
@@ -127,52 +153,30 @@ where
         self.test_each(simd, packet, place, met & own);
     }
 
-    /// Tries the primitive in `place` with the rays of the lanes `met` one by one.
     #[inline(always)]
-    fn test_each<S: Simd>(&mut self, simd: S, packet: &mut Packet, place: usize, met: u64) {
-        for k in lanes(met) {
-            let ray = self.rays.ray(k);
-            if self.lane_test(&ray, k).test(simd, place) {
-                packet.limit[k] = BLOCKED;
-            }
-        }
-    }
-
-    /// The test of primitives with the ray of a lane.
-    #[inline(always)]
-    fn lane_test<'t>(
-        &'t mut self,
-        ray: &'t Ray,
-        k: usize,
-    ) -> crossed::Test<'t, &'t B, VisitOf<'t, V>> {
-        let visit = VisitOf { visit: self.visit, lane: k };
-        crossed::Test { accel: self.accel, ray, end: 1.0, opaque: self.opaque, visit }
-    }
-
-    /// Takes the candidates of a leaf for the ray of one lane: a certain hit of an opaque one blocks it without further ado.
-    #[inline(always)]
-    fn take<S: Simd>(
+    fn take(
         &mut self,
         simd: S,
         packet: &mut Packet,
         k: usize,
-        first: Target,
+        first: u32,
         candidates: &Candidates,
     ) {
+        // A certain hit of an opaque one blocks it without further ado.
         let Candidates { mut maybe, certain, .. } = *candidates;
         let left = self.rays.from.map_or(u32::MAX, |from| from.hits.primitive[k]);
         while maybe != 0 && packet.limit[k] >= 0.0 {
             let lane = maybe.trailing_zeros() & 7;
             maybe &= maybe - 1;
-            let target = first.lane(lane);
-            let number = self.accel.numbers[target.place as usize];
+            let place = first + lane;
+            let number = self.accel.numbers[place as usize];
             let certain = certain & 1 << lane != 0;
             if certain && number != left && (self.opaque)(number) {
                 packet.limit[k] = BLOCKED;
                 continue;
             }
-            match target.corners(self.tree).filter(|_| has_lanes()) {
-                None => self.test_each(simd, packet, target.place as usize, 1 << k),
+            match self.tree.corners(place).filter(|_| has_lanes()) {
+                None => self.test_each(simd, packet, place as usize, 1 << k),
                 // A ray never meets the triangle that it leaves.
                 Some(_) if number == left => {}
                 Some(corners) => {
@@ -183,37 +187,6 @@ where
                     }
                 }
             }
-        }
-    }
-}
-
-impl<S: Simd, B, V> Searches<S> for Blocks<'_, B, V>
-where
-    B: Fn(u32) -> bool,
-    V: FnMut(usize, u32, Crossing) -> ControlFlow<()>,
-{
-    #[inline(always)]
-    fn leaf(&mut self, simd: S, packet: &mut Packet, met: u64, leaf: Content) {
-        match leaf {
-            Content::Spheres(block) => {
-                let block = &self.tree.spheres[block];
-                for k in lanes(met) {
-                    let ray = LeafRay::new(&packet.ray(k), 1.0);
-                    let candidates = block.sort_out(simd, &ray, packet.limit[k]);
-                    self.take(simd, packet, k, Target::sphere(block.first), &candidates);
-                }
-            }
-            Content::Triangles(block) => {
-                let block = &self.tree.triangles[block];
-                let first = Target::triangle(block.first, block.corners);
-                for k in lanes(met) {
-                    let ray = LeafRay::new(&packet.ray(k), 1.0);
-                    let candidates = block.sort_out(simd, &ray, packet.limit[k]);
-                    self.take(simd, packet, k, first, &candidates);
-                }
-            }
-            Content::One(place) => self.test(simd, packet, place, met),
-            Content::Node(_) => {}
         }
     }
 

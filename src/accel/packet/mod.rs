@@ -12,13 +12,14 @@ use glam::DVec3;
 
 use super::{
     beam::Beam,
-    frame::{FAR_SQUARED, NEAR_SQUARED, TreeRay},
+    frame::{ARRIVAL_SLACK, FAR_SQUARED, NEAR_SQUARED, TreeRay},
+    leaf::{Candidates, LeafRay},
     node::{Child, Content, Node},
     simd::Simd,
     tree::Tree,
     walk::MAX_DEPTH,
 };
-use crate::geometry::lanes::{Column, LANES, RayLanes};
+use crate::geometry::lanes::{Column, LANES, RayLanes, lanes};
 pub(super) use blocked::BlockedPacket;
 pub(super) use nearest::NearestPacket;
 
@@ -69,13 +70,21 @@ struct Packet {
     late: Column,
     /// Beyond this parameter a ray asks for nothing more; negative for a lane that is done or not in use.
     limit: Singles,
+    /// The rest of what the tests of leaves need: one over the squared length of the direction, its length, and the end rounded down.
+    inverse_square: Singles,
+    length: Singles,
+    end: Singles,
     beam: Beam,
 }
 
 /// What the rays of a packet search for.
 trait Searches<S: Simd> {
-    /// Tries the primitives of a leaf with the rays of the lanes `met`, and may lower their limits. Must be `#[inline(always)]`.
-    fn leaf(&mut self, simd: S, packet: &mut Packet, met: u64, leaf: Content);
+    /// Tries the primitive in `place` with the rays of the lanes `met`; this and the next may lower their limits. Must be
+    /// `#[inline(always)]`.
+    fn test(&mut self, simd: S, packet: &mut Packet, place: usize, met: u64);
+
+    /// Takes the candidates of a leaf, whose primitives start at `first`, for the ray of lane `k`. Must be `#[inline(always)]`.
+    fn take(&mut self, simd: S, packet: &mut Packet, k: usize, first: u32, candidates: &Candidates);
 
     /// How far along the axis of the beam any ray still searches.
     fn end(&self, packet: &Packet) -> f32;
@@ -98,9 +107,12 @@ impl Packet {
             origin: zero,
             dir: zero,
             inverse: zero,
-            rate: none,
-            late: none,
+            rate: [0.0; LANES],
+            late: [0.0; LANES],
             limit: [ASIDE; LANES],
+            inverse_square: none,
+            length: none,
+            end: none,
             beam,
         };
         let mut distances = [0.0; LANES];
@@ -122,6 +134,7 @@ impl Packet {
             let limit = packet.end_above(k, end);
             let is_open = (met >> k & 1 != 0) & (limit >= 0.0);
             packet.limit[k] = if is_open { limit } else { ASIDE };
+            packet.end[k] = packet.end_below(k, end);
         }
         Some(packet)
     }
@@ -135,6 +148,8 @@ impl Packet {
             self.dir[axis][k] = ray.dir[axis];
             self.inverse[axis][k] = inverse[axis];
         }
+        let square = ray.square();
+        (self.inverse_square[k], self.length[k]) = (1.0 / square, square.sqrt());
         self.rate[k] = ray.rate;
     }
 
@@ -161,12 +176,69 @@ impl Packet {
         limit_above(t * self.rate[k] - self.late[k])
     }
 
-    /// The ray of a lane in the tree's frame.
+    /// The world's parameter `t` of a lane here, rounded down likewise and with room for the error of the arrival.
     #[inline(always)]
-    fn ray(&self, k: usize) -> TreeRay {
-        let lane = |columns: &[Singles; 3]| columns.each_ref().map(|column| column[k]);
-        let (origin, dir) = (lane(&self.origin), lane(&self.dir));
-        TreeRay::again(origin, dir, self.rate[k], self.late[k])
+    fn end_below(&self, k: usize, t: f64) -> f32 {
+        let late = self.late[k];
+        let slack = if late == 0.0 { 0.0 } else { 2.0 * ARRIVAL_SLACK };
+        limit_below(t * self.rate[k] - late - slack)
+    }
+
+    /// The ray of a lane for the tests of leaves.
+    #[inline(always)]
+    fn leaf_ray(&self, k: usize) -> LeafRay {
+        let (origin, dir) = (self.point(k), self.direction(k));
+        LeafRay {
+            origin,
+            dir,
+            inverse: self.inverse_square[k],
+            length: self.length[k],
+            end: self.end[k],
+            #[cfg(feature = "leaf-study")]
+            ray: TreeRay { origin, dir, rate: self.rate[k], arrival: self.late[k], slack: 0.0 },
+        }
+    }
+
+    /// Where the ray of a lane starts in the tree's frame, or arrives.
+    #[inline(always)]
+    fn point(&self, k: usize) -> [f32; 3] {
+        self.origin.each_ref().map(|column| column[k])
+    }
+
+    /// Its direction there.
+    #[inline(always)]
+    fn direction(&self, k: usize) -> [f32; 3] {
+        self.dir.each_ref().map(|column| column[k])
+    }
+
+    /// Has `searches` try the primitives of a leaf with the rays of the lanes `met`.
+    #[inline(always)]
+    fn leaf<S: Simd>(
+        &mut self,
+        simd: S,
+        tree: &Tree,
+        searches: &mut impl Searches<S>,
+        met: u64,
+        leaf: Content,
+    ) {
+        match leaf {
+            Content::Spheres(run) => {
+                for k in lanes(met) {
+                    let (ray, limit) = (self.leaf_ray(k), self.limit[k]);
+                    let candidates = tree.spheres.sort_out(simd, run, &ray, limit);
+                    searches.take(simd, self, k, run.first, &candidates);
+                }
+            }
+            Content::Triangles(run) => {
+                for k in lanes(met) {
+                    let (ray, limit) = (self.leaf_ray(k), self.limit[k]);
+                    let candidates = tree.triangles.sort_out(simd, run, &ray, limit);
+                    searches.take(simd, self, k, run.first, &candidates);
+                }
+            }
+            Content::One(place) => searches.test(simd, self, place, met),
+            Content::Node(_) => {}
+        }
     }
 
     /// Which of the rays may meet the box of `node` in `slot`; the same arithmetic as a single ray's.
@@ -210,7 +282,7 @@ impl Packet {
                 // A tree of one leaf has no box to be tested.
                 let open = (0..LANES).filter(|k| self.limit[*k] >= 0.0);
                 let open = open.fold(0, |open, k| open | 1 << k);
-                searches.leaf(simd, self, open, content);
+                self.leaf(simd, tree, searches, open, content);
                 return;
             }
         };
@@ -225,6 +297,7 @@ impl Packet {
                     let slot = (met.trailing_zeros() & 7) as usize;
                     met &= met - 1;
                     let child = tree.nodes[k].children[slot];
+                    tree.prefetch(simd, child);
                     let next =
                         Visit { enter: enter[slot], child, node: k as u32, slot: slot as u32 };
                     // Nearer children on top.
@@ -240,7 +313,7 @@ impl Packet {
                 let node = &tree.nodes[visit.node as usize];
                 let met = self.meet(simd, node, visit.slot as usize);
                 if met != 0 {
-                    searches.leaf(simd, self, met, visit.child.content());
+                    self.leaf(simd, tree, searches, met, visit.child.content());
                     limit = searches.end(self);
                 }
             }
@@ -285,4 +358,10 @@ fn within(column: &Column, limit: f64) -> u64 {
 #[inline(always)]
 fn limit_above(x: f64) -> f32 {
     (x as f32) * (1.0 + 2.0 * f32::EPSILON) + f32::MIN_POSITIVE
+}
+
+/// A limit not above `x`, if that is positive, without a branch.
+#[inline(always)]
+fn limit_below(x: f64) -> f32 {
+    (x as f32) * (1.0 - 2.0 * f32::EPSILON) - f32::MIN_POSITIVE
 }

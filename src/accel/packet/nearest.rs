@@ -6,10 +6,9 @@ use super::{FEWEST_LANES, GROUP, Packet, START_SLACK, Searches, Singles, has_lan
 use crate::{
     accel::{
         Accel,
-        leaf::{Candidates, LeafRay},
-        node::Content,
+        leaf::Candidates,
         simd::{Kernel, Simd},
-        target::{Target, triangle_crossing},
+        target::{prefetch, triangle_crossing},
         tree::Tree,
     },
     geometry::{
@@ -40,14 +39,14 @@ impl Kernel for NearestPacket<'_> {
         *hits = HitLanes::NONE;
         let (mut rates, mut starts) = ([0.0; LANES], [0.0; LANES]);
         for k in 0..LANES {
-            let (ray, searches) = (packet.ray(k), packet.limit[k] >= 0.0);
-            let along = limit_above(f64::from(packet.beam.along(ray.dir)));
-            let start = packet.beam.depth(ray.origin) + START_SLACK;
+            let searches = packet.limit[k] >= 0.0;
+            let along = limit_above(f64::from(packet.beam.along(packet.direction(k))));
+            let start = packet.beam.depth(packet.point(k)) + START_SLACK;
             rates[k] = if searches { along } else { 0.0 };
             starts[k] = if searches { start } else { f32::NEG_INFINITY };
         }
         let crossed = [[f64::NAN; LANES]; 2];
-        let pending = [Target::NONE; LANES];
+        let pending = [u32::MAX; LANES];
         let from = [f32::INFINITY; LANES];
         let mut nearest =
             Nearest { accel, tree, rays, hits, rates, starts, crossed, pending, from };
@@ -71,47 +70,28 @@ struct Nearest<'a> {
     starts: Singles,
     /// Where the lanes cross the primitive that is tried.
     crossed: [Column; 2],
-    /// A certain hit of each lane, that has not been decided in double precision because it may never matter, and what its
+    /// The place of a certain hit of each lane, beyond all if there is none, that has not been decided in double precision because it may never matter, and what its
     /// parameter is not less than.
-    pending: [Target; LANES],
+    pending: [u32; LANES],
     from: Singles,
 }
 
 impl Nearest<'_> {
-    /// Tries the primitive in `place` with the rays of the lanes `met`.
-    #[inline(always)]
-    fn test<S: Simd>(&mut self, simd: S, packet: &mut Packet, place: usize, met: u64) {
-        let (number, shape) = (self.accel.numbers[place], &self.accel.shapes[place]);
-        let range = hull(met);
-        if met.count_ones() < FEWEST_LANES
-            || !has_lanes()
-            || !simd.cross_lanes(shape, self.rays, range.clone(), &mut self.crossed)
-        {
-            for k in lanes(met) {
-                for crossing in self.accel.crossings(simd, &self.rays.ray(k), place) {
-                    self.offer(packet, k, number, crossing);
-                }
-            }
-            return;
-        }
-        self.offer_lanes(packet, number, range);
-    }
-
     /// Decides a leaf's primitive, which the rays of the lanes `met` hit if `certain`.
     #[inline(always)]
     fn decide<S: Simd>(
         &mut self,
         simd: S,
         packet: &mut Packet,
-        target: Target,
+        place: u32,
         met: u64,
         certain: bool,
     ) {
-        let corners = target.corners(self.tree).filter(|_| has_lanes());
+        let corners = self.tree.corners(place).filter(|_| has_lanes());
         let Some(corners) = corners else {
-            return self.test(simd, packet, target.place as usize, met);
+            return self.test(simd, packet, place as usize, met);
         };
-        let number = self.accel.numbers[target.place as usize];
+        let number = self.accel.numbers[place as usize];
         if met.count_ones() < FEWEST_LANES {
             for k in lanes(met) {
                 let ray = self.rays.plain_ray(k);
@@ -153,78 +133,69 @@ impl Nearest<'_> {
         }
     }
 
-    /// Takes the candidates of a leaf for the ray of one lane.
-    ///
-    /// A pending hit loses to one that ends before it starts; where intervals overlap, both are decided.
-    #[inline(always)]
-    fn take<S: Simd>(
-        &mut self,
-        simd: S,
-        packet: &mut Packet,
-        k: usize,
-        first: Target,
-        candidates: &Candidates,
-    ) {
-        let Candidates { mut maybe, certain, from, to } = *candidates;
-        while maybe != 0 {
-            let lane = maybe.trailing_zeros() & 7;
-            maybe &= maybe - 1;
-            let target = first.lane(lane);
-            if certain & 1 << lane == 0 {
-                self.decide(simd, packet, target, 1 << k, false);
-                continue;
-            }
-            let (from, to) = (from.0[lane as usize], to.0[lane as usize]);
-            if from > packet.limit[k] {
-                continue;
-            }
-            if to >= self.from[k] && !self.pending[k].is_none() {
-                self.decide(simd, packet, self.pending[k], 1 << k, true);
-            }
-            (self.pending[k], self.from[k]) = (target, from);
-            packet.limit[k] = packet.limit[k].min(to);
-            target.prefetch(simd, self.accel, self.tree);
-        }
-    }
-
     /// Decides what is pending.
     #[inline(always)]
     fn finish<S: Simd>(&mut self, simd: S, packet: &mut Packet) {
-        let pending = |k: usize| !self.pending[k].is_none() && self.from[k] <= packet.limit[k];
+        let pending = |k: usize| self.pending[k] != u32::MAX && self.from[k] <= packet.limit[k];
         let mut open = (0..LANES).fold(0_u64, |open, k| open | u64::from(pending(k)) << k);
         while open != 0 {
-            let target = self.pending[open.trailing_zeros() as usize];
-            let same = |k: usize| u64::from(self.pending[k].place == target.place) << k;
+            let place = self.pending[open.trailing_zeros() as usize];
+            let same = |k: usize| u64::from(self.pending[k] == place) << k;
             let same = open & (0..LANES).fold(0, |all, k| all | same(k));
             open &= !same;
-            self.decide(simd, packet, target, same, true);
+            self.decide(simd, packet, place, same, true);
         }
     }
 }
 
 impl<S: Simd> Searches<S> for Nearest<'_> {
     #[inline(always)]
-    fn leaf(&mut self, simd: S, packet: &mut Packet, met: u64, leaf: Content) {
-        match leaf {
-            Content::Spheres(block) => {
-                let block = &self.tree.spheres[block];
-                for k in lanes(met) {
-                    let ray = LeafRay::new(&packet.ray(k), f64::INFINITY);
-                    let candidates = block.sort_out(simd, &ray, packet.limit[k]);
-                    self.take(simd, packet, k, Target::sphere(block.first), &candidates);
+    fn test(&mut self, simd: S, packet: &mut Packet, place: usize, met: u64) {
+        let (number, shape) = (self.accel.numbers[place], &self.accel.shapes[place]);
+        let range = hull(met);
+        if met.count_ones() < FEWEST_LANES
+            || !has_lanes()
+            || !simd.cross_lanes(shape, self.rays, range.clone(), &mut self.crossed)
+        {
+            for k in lanes(met) {
+                for crossing in self.accel.crossings(simd, &self.rays.ray(k), place) {
+                    self.offer(packet, k, number, crossing);
                 }
             }
-            Content::Triangles(block) => {
-                let block = &self.tree.triangles[block];
-                let first = Target::triangle(block.first, block.corners);
-                for k in lanes(met) {
-                    let ray = LeafRay::new(&packet.ray(k), f64::INFINITY);
-                    let candidates = block.sort_out(simd, &ray, packet.limit[k]);
-                    self.take(simd, packet, k, first, &candidates);
-                }
+            return;
+        }
+        self.offer_lanes(packet, number, range);
+    }
+
+    #[inline(always)]
+    fn take(
+        &mut self,
+        simd: S,
+        packet: &mut Packet,
+        k: usize,
+        first: u32,
+        candidates: &Candidates,
+    ) {
+        // A pending hit loses to one that ends before it starts; where intervals overlap, both are decided.
+        let Candidates { mut maybe, certain, from, to } = *candidates;
+        while maybe != 0 {
+            let lane = maybe.trailing_zeros() & 7;
+            maybe &= maybe - 1;
+            let place = first + lane;
+            if certain & 1 << lane == 0 {
+                self.decide(simd, packet, place, 1 << k, false);
+                continue;
             }
-            Content::One(place) => self.test(simd, packet, place, met),
-            Content::Node(_) => {}
+            let (from, to) = (from.0[lane as usize], to.0[lane as usize]);
+            if from > packet.limit[k] {
+                continue;
+            }
+            if to >= self.from[k] && self.pending[k] != u32::MAX {
+                self.decide(simd, packet, self.pending[k], 1 << k, true);
+            }
+            (self.pending[k], self.from[k]) = (place, from);
+            packet.limit[k] = packet.limit[k].min(to);
+            prefetch(simd, self.accel, self.tree, place);
         }
     }
 

@@ -2,8 +2,8 @@
 
 use super::{
     super::{
-        leaf::{LeafRay, Spheres, Triangles, cross, dot, load, splat, sub},
-        node::Content,
+        leaf::{LeafRay, Spheres, Triangles, cross, dot, splat, sub},
+        node::{Content, Run},
         simd::{Lanes, Simd},
         tree::Tree,
     },
@@ -12,35 +12,39 @@ use super::{
 use crate::geometry::Crossing;
 
 impl Spheres {
-    /// The two roots of each sphere, which are NaN where it is missed.
+    /// The spheres, and the two roots of each, which are NaN where it is missed.
     #[inline(always)]
-    fn naive<S: Simd>(&self, simd: S, ray: &LeafRay) -> [S::F; 2] {
+    fn naive<S: Simd>(&self, simd: S, run: Run, ray: &LeafRay) -> (u32, [S::F; 2]) {
+        let leaf = self.rows.leaf(run);
         let (origin, dir) = (splat(simd, ray.origin), splat(simd, ray.dir));
         let inverse = simd.splat(ray.inverse);
-        let f = sub(simd, load(simd, &self.center), origin);
+        let f = sub(simd, leaf.rows(simd, 0), origin);
         let b = dot(simd, f, dir);
-        let c = simd.sub(dot(simd, f, f), simd.load(&self.outer));
+        let radius = leaf.row(simd, 3);
+        let c = simd.neg_mul_add(radius, radius, dot(simd, f, f));
         let a = dot(simd, dir, dir);
         let root = simd.sqrt(simd.mul_sub(b, b, simd.mul(a, c)));
-        [simd.mul(simd.sub(b, root), inverse), simd.mul(simd.add(b, root), inverse)]
+        let roots = [simd.sub(b, root), simd.add(b, root)];
+        (leaf.all(), roots.map(|t| simd.mul(t, inverse)))
     }
 }
 
 impl Triangles {
     /// The parameter for each triangle, and which are hit.
     #[inline(always)]
-    fn naive<S: Simd>(&self, simd: S, ray: &LeafRay) -> (u32, S::F) {
+    fn naive<S: Simd>(&self, simd: S, run: Run, ray: &LeafRay) -> (u32, S::F) {
+        let leaf = self.rows.leaf(run);
         let (origin, dir) = (splat(simd, ray.origin), splat(simd, ray.dir));
-        let (edge1, edge2) = (load(simd, &self.edge1), load(simd, &self.edge2));
+        let (edge1, edge2) = (leaf.rows(simd, 3), leaf.rows(simd, 6));
         let p = cross(simd, dir, edge2);
         let inverse = simd.div(simd.splat(1.0), dot(simd, edge1, p));
-        let s = sub(simd, origin, load(simd, &self.corner));
+        let s = sub(simd, origin, leaf.rows(simd, 0));
         let q = cross(simd, s, edge1);
         let u = simd.mul(dot(simd, s, p), inverse);
         let v = simd.mul(dot(simd, dir, q), inverse);
         let zero = simd.splat(0.0);
         let hit = simd.le(zero, u) & simd.le(zero, v) & simd.le(simd.add(u, v), simd.splat(1.0));
-        (hit & ((1 << self.count) - 1), simd.mul(dot(simd, edge2, q), inverse))
+        (hit & leaf.all(), simd.mul(dot(simd, edge2, q), inverse))
     }
 }
 
@@ -103,26 +107,24 @@ pub(in crate::accel) fn leaf<S: Simd>(
     let limit = simd.splat(limit);
     let ahead = |t: S::F| simd.le(start, t) & simd.le(t, limit);
     match leaf {
-        Content::Spheres(k) => {
-            let block = &tree.spheres[k];
-            let [t0, t1] = block.naive(simd, ray);
+        Content::Spheres(run) => {
+            let (all, [t0, t1]) = tree.spheres.naive(simd, run, ray);
             // Of a NaN, which is a miss, `min` and `max` hand on the second.
-            if simd.le(simd.max(start, t0), simd.min(limit, t1)) == 0 {
+            if all & simd.le(simd.max(start, t0), simd.min(limit, t1)) == 0 {
                 return Textbook::Missed;
             }
-            let hits = [ahead(t0), ahead(t1)];
+            let hits = [all & ahead(t0), all & ahead(t1)];
             let t = [simd.store(t0), simd.store(t1)];
-            Textbook::Hit(Found { first: block.first, hits, t })
+            Textbook::Hit(Found { first: run.first, hits, t })
         }
-        Content::Triangles(k) => {
-            let block = &tree.triangles[k];
-            let (hit, t) = block.naive(simd, ray);
+        Content::Triangles(run) => {
+            let (hit, t) = tree.triangles.naive(simd, run, ray);
             let hit = hit & ahead(t);
             if hit == 0 {
                 return Textbook::Missed;
             }
             let t = simd.store(t);
-            Textbook::Hit(Found { first: block.first, hits: [hit, 0], t: [t, t] })
+            Textbook::Hit(Found { first: run.first, hits: [hit, 0], t: [t, t] })
         }
         Content::One(_) | Content::Node(_) => Textbook::Unwanted,
     }
