@@ -6,8 +6,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{
-    build::{self, Division},
-    collapse::{Kind, Run, collapse},
+    build,
+    collapse::{Kind, Run, Wide, collapse},
     frame::Frame,
     huge,
     leaf::{Spheres, Triangles},
@@ -15,6 +15,20 @@ use super::{
     walk::MAX_DEPTH,
 };
 use crate::geometry::Shape;
+
+/// The nodes of the tree over the primitives `inside`, and their order.
+pub(super) fn arrange(shapes: &[Shape], inside: &[u32], frame: &Frame) -> Wide {
+    let boxes = || build::boxes(shapes, inside, frame);
+    let kinds: Vec<Kind> = inside.par_iter().map(|k| Kind::of(&shapes[*k as usize])).collect();
+    let meshes = kinds.iter().take(64).any(|kind| *kind == Kind::Triangle);
+    let wide = collapse(&build::binary(boxes(), meshes), &kinds);
+    let mut wide =
+        if wide.depth > MAX_DEPTH { collapse(&build::balanced(&boxes()), &kinds) } else { wide };
+    for place in &mut wide.order {
+        *place = inside[*place as usize];
+    }
+    wide
+}
 
 /// Nodes and leaves, and the frame in which their boxes are.
 #[derive(Debug)]
@@ -29,30 +43,18 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    /// Builds the tree over `inside`; also returns its primitives in the order of the leaves.
-    pub(super) fn build(shapes: &[Shape], division: &Division) -> Option<(Self, Vec<u32>)> {
-        let (frame, inside) = (division.frame?, &division.inside);
-        let boxes = || build::boxes(shapes, inside, &frame);
-        let kinds: Vec<Kind> = inside.par_iter().map(|k| Kind::of(&shapes[*k as usize])).collect();
-        let meshes = kinds.iter().take(64).any(|kind| *kind == Kind::Triangle);
-        let mut wide = collapse(build::binary(boxes(), meshes), &kinds);
-        if wide.depth > MAX_DEPTH {
-            wide = collapse(build::balanced(&boxes()), &kinds);
-        }
-        let order: Vec<u32> = wide.order.iter().map(|k| inside[*k as usize]).collect();
-        let leaves = Leaves { shapes, order: &order, frame: &frame };
+    /// The tree whose nodes are those of `wide`, over `shapes` in its order.
+    pub(super) fn new(wide: Wide, frame: Frame, shapes: &[Shape]) -> Self {
+        let leaves = Leaves { shapes, frame: &frame };
         let corners = leaves.corners(&wide.triangle_runs);
-        let mut nodes = huge::vec_with_capacity(wide.nodes.len());
-        nodes.append(&mut wide.nodes);
-        let tree = Self {
-            frame,
-            root: wide.root,
-            nodes,
+        Self {
             spheres: leaves.spheres(&wide.sphere_runs),
             triangles: leaves.triangles(&wide.triangle_runs, &corners),
             corners,
-        };
-        Some((tree, order))
+            frame,
+            root: wide.root,
+            nodes: wide.nodes,
+        }
     }
 
     /// The memory of nodes and leaves, in bytes.
@@ -75,16 +77,12 @@ impl Tree {
 
 /// What the leaves are made from.
 struct Leaves<'a> {
+    /// The primitives in the tree's order.
     shapes: &'a [Shape],
-    order: &'a [u32],
     frame: &'a Frame,
 }
 
 impl Leaves<'_> {
-    fn shapes_of(&self, run: Run) -> impl Iterator<Item = &Shape> {
-        self.order[run.places()].iter().map(|k| &self.shapes[*k as usize])
-    }
-
     fn spheres(&self, runs: &[Run]) -> Vec<Spheres> {
         let mut blocks = huge::vec_with_capacity(runs.len());
         runs.par_iter().map(|run| self.sphere_block(*run)).collect_into_vec(&mut blocks);
@@ -93,7 +91,7 @@ impl Leaves<'_> {
 
     fn sphere_block(&self, run: Run) -> Spheres {
         let mut block = Spheres::new(run.first);
-        for shape in self.shapes_of(run) {
+        for shape in &self.shapes[run.places()] {
             if let Shape::Sphere(s) = shape {
                 let (center, radius) =
                     (self.frame.point(s.center()), self.frame.length(s.radius()));
@@ -105,12 +103,11 @@ impl Leaves<'_> {
 
     /// The corners of the triangles of all runs.
     fn corners(&self, runs: &[Run]) -> Vec<[DVec3; 3]> {
-        let which: Vec<u32> =
-            runs.iter().flat_map(|run| &self.order[run.places()]).copied().collect();
-        let mut corners = huge::vec_with_capacity(which.len());
-        which
+        let places: Vec<u32> = runs.iter().flat_map(|run| run.places()).map(|k| k as u32).collect();
+        let mut corners = huge::vec_with_capacity(places.len());
+        places
             .par_iter()
-            .map(|k| corners_of(&self.shapes[*k as usize]))
+            .map(|place| corners_of(&self.shapes[*place as usize]))
             .collect_into_vec(&mut corners);
         corners
     }
