@@ -16,92 +16,15 @@ use obvhs::{
 };
 use rayon::prelude::*;
 
-use super::{frame::Frame, node::Child};
-use crate::geometry::{Bounds, Shape};
+use super::{frame::Frame, huge};
+use crate::geometry::Shape;
 
 /// By how much a box may be larger than it must be, relative to its size.
 const JITTER: f32 = 1.0 / 1024.0;
 
-/// A primitive this many times as large as the median one may be kept out of the tree.
-const GIANT: f64 = 1e3;
-
-/// The most primitives kept out for their size; every ray tests each of them.
-const MAX_GIANTS: usize = 8;
-
-/// A binary tree; the two children of a node are next to each other, a leaf holds one primitive.
-pub(super) struct Binary {
-    /// The nodes, the root first.
-    pub(super) nodes: Vec<Bvh2Node>,
-    /// What the leaves' indices stand for.
-    pub(super) indices: Vec<u32>,
-}
-
-/// Which primitives go into the tree, which stay out, and the tree's frame.
-pub(super) struct Division {
-    /// The primitives in the tree, in ascending order.
-    pub(super) inside: Vec<u32>,
-    /// Those that every ray tests.
-    pub(super) outside: Vec<u32>,
-    /// The frame of the tree; `None` if nothing is in it.
-    pub(super) frame: Option<Frame>,
-}
-
-impl Division {
-    /// Divides `shapes`: what is not finite, or so large that the rest would be lost in its frame, stays out.
-    pub(super) fn of(shapes: &[Shape]) -> Self {
-        let sizes: Vec<f64> = shapes.par_iter().map(|s| s.bounds().size()).collect();
-        let mut outside = giants(shapes, &sizes);
-        outside.extend((0..).zip(&sizes).filter(|(_, s)| !s.is_finite()).map(|(k, _)| k));
-        outside.sort_unstable();
-        let mut inside: Vec<u32> = (0..shapes.len() as u32).collect();
-        inside.retain(|k| outside.binary_search(k).is_err());
-        let frame = Frame::new(&bounds_of(shapes, &inside));
-        if frame.is_none() || inside.is_empty() || shapes.len() >= Child::LIMIT {
-            return Self {
-                inside: Vec::new(),
-                outside: (0..shapes.len() as u32).collect(),
-                frame: None,
-            };
-        }
-        Self { inside, outside, frame }
-    }
-}
-
-fn bounds_of(shapes: &[Shape], which: &[u32]) -> Bounds {
-    which.par_iter().map(|k| shapes[*k as usize].bounds()).reduce(|| Bounds::EMPTY, Bounds::union)
-}
-
-/// The few primitives that dwarf the others, if the others alone take a much smaller frame.
-fn giants(shapes: &[Shape], sizes: &[f64]) -> Vec<u32> {
-    let mut sorted: Vec<f64> = sizes.iter().copied().filter(|s| s.is_finite()).collect();
-    if sorted.len() < 3 {
-        return Vec::new();
-    }
-    let middle = sorted.len() / 2;
-    let median = *sorted.select_nth_unstable_by(middle, f64::total_cmp).1;
-    let is_giant = |size: f64| size.is_finite() && size > GIANT * median;
-    let giants: Vec<u32> =
-        (0..).zip(sizes).filter(|(_, s)| is_giant(**s)).map(|(k, _)| k).collect();
-    if giants.is_empty() || giants.len() > MAX_GIANTS {
-        return Vec::new();
-    }
-    let (all, rest) = shapes
-        .par_iter()
-        .zip(sizes.par_iter())
-        .filter(|(_, s)| s.is_finite())
-        .fold(
-            || (Bounds::EMPTY, Bounds::EMPTY),
-            |(all, rest), (shape, size)| {
-                let bounds = shape.bounds();
-                (all.union(bounds), if is_giant(*size) { rest } else { rest.union(bounds) })
-            },
-        )
-        .reduce(|| (Bounds::EMPTY, Bounds::EMPTY), |a, b| (a.0.union(b.0), a.1.union(b.1)));
-    if rest.size() < all.size() / 4.0 { giants } else { Vec::new() }
-}
-
 /// The boxes of the primitives `inside`, in the frame of the tree.
 pub(super) fn boxes(shapes: &[Shape], inside: &[u32], frame: &Frame) -> Vec<Aabb> {
+    let mut boxes = huge::vec_with_capacity(inside.len());
     inside
         .par_iter()
         .map(|k| {
@@ -114,7 +37,8 @@ pub(super) fn boxes(shapes: &[Shape], inside: &[u32], frame: &Frame) -> Vec<Aabb
                 max: max + unit_vector(&mut random) * reach,
             }
         })
-        .collect()
+        .collect_into_vec(&mut boxes);
+    boxes
 }
 
 /// Three numbers from 0 to 1 (Steele, Lea & Flood, "Fast splittable pseudorandom number generators", 2014).
@@ -150,8 +74,9 @@ impl Effort {
     }
 }
 
-/// The tree that obvhs builds over `boxes`, of a scene of `meshes` or not.
-pub(super) fn binary(boxes: Vec<Aabb>, meshes: bool) -> Binary {
+/// The binary tree that obvhs builds over `boxes`, of a scene of `meshes` or not; the two children of a node are next to
+/// each other, the root is first, and a leaf's index is that of its one box.
+pub(super) fn binary(boxes: Vec<Aabb>, meshes: bool) -> Vec<Bvh2Node> {
     let Effort { reach, first_passes, reinsertion } = Effort::for_boxes(boxes.len(), meshes);
     let precision = if boxes.len() <= 2_000 { SortPrecision::U128 } else { SortPrecision::U64 };
     let indices = (0..boxes.len() as u32).collect();
@@ -167,20 +92,20 @@ pub(super) fn binary(boxes: Vec<Aabb>, meshes: bool) -> Binary {
     for share in reinsertion {
         optimizer.run(&mut bvh, *share, None);
     }
-    Binary { nodes: bvh.nodes, indices: bvh.primitive_indices }
+    bvh.nodes
 }
 
 /// A balanced tree over `boxes`, for those of which obvhs makes too deep a tree: each node is cut in the middle of its
 /// primitives along its longest side.
-pub(super) fn balanced(boxes: &[Aabb]) -> Binary {
+pub(super) fn balanced(boxes: &[Aabb]) -> Vec<Bvh2Node> {
     let mut indices: Vec<u32> = (0..boxes.len() as u32).collect();
     let mut nodes = vec![Bvh2Node::default()];
     let mut todo = vec![(0, 0, boxes.len())];
     while let Some((node, start, end)) = todo.pop() {
         let range = &mut indices[start..end];
         let bounds = range.iter().fold(Aabb::empty(), |all, k| all.union(&boxes[*k as usize]));
-        if range.len() <= 1 {
-            nodes[node] = Bvh2Node::new(bounds, range.len() as u32, start as u32);
+        if let [index] = range {
+            nodes[node] = Bvh2Node::new(bounds, 1, *index);
             continue;
         }
         let axis = bounds.largest_axis();
@@ -193,7 +118,7 @@ pub(super) fn balanced(boxes: &[Aabb]) -> Binary {
         todo.push((first, start, start + middle));
         todo.push((first + 1, start + middle, end));
     }
-    Binary { nodes, indices }
+    nodes
 }
 
 /// The corners of a node's box.

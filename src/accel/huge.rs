@@ -1,4 +1,4 @@
-//! Memory in large pages, so that a ray through gigabytes does not wait for the tables of small ones.
+//! Memory in large pages, so that a ray through gigabytes does not wait for the tables of small ones, and memory given back.
 #![allow(unsafe_code, reason = "the advice to the system is a foreign function")]
 
 /// An empty vector with room for `count` elements, in large pages where the system has some.
@@ -7,6 +7,12 @@ pub(super) fn vec_with_capacity<T>(count: usize) -> Vec<T> {
     #[cfg(target_os = "linux")]
     linux::advise(vec.as_ptr().addr(), count * size_of::<T>());
     vec
+}
+
+/// Gives back to the system what the allocator keeps of memory that is free; GNU's keeps tens of megabytes.
+pub(super) fn give_back() {
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    linux::trim();
 }
 
 #[cfg(target_os = "linux")]
@@ -20,6 +26,15 @@ mod linux {
 
     unsafe extern "C" {
         fn madvise(address: *mut c_void, length: usize, advice: c_int) -> c_int;
+        #[cfg(target_env = "gnu")]
+        fn malloc_trim(pad: usize) -> c_int;
+    }
+
+    /// Has the allocator give back all free memory.
+    #[cfg(target_env = "gnu")]
+    pub(super) fn trim() {
+        // SAFETY: the function takes the allocator's own locks and touches no memory that is in use.
+        let _ = unsafe { malloc_trim(0) };
     }
 
     /// Asks for large pages in the part of the memory at `start` that they can cover.

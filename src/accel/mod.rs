@@ -9,6 +9,7 @@ pub mod brute;
 mod build;
 mod collapse;
 mod crossed;
+mod division;
 mod extreme;
 mod frame;
 mod huge;
@@ -29,23 +30,25 @@ mod tests;
 mod tree;
 mod walk;
 
-use std::ops::{ControlFlow, Range};
+use std::{
+    mem,
+    ops::{ControlFlow, Range},
+};
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use crate::geometry::{
     Bounds, Crossing, Hit, Ray, Shape,
     hit::Crossings,
     lanes::{HitLanes, RayLanes, lanes},
 };
-use build::Division;
 use crossed::Crossed;
+use division::Division;
 use packet::{BlockedPacket, NearestPacket};
 use query::Nearest;
 pub use simd::Isa;
 use simd::{Kernel, Simd, dispatch};
-use tree::Tree;
+use tree::{Tree, arrange};
 
 /// What [`Accel::run`] runs.
 pub(crate) trait Work {
@@ -94,19 +97,21 @@ impl Accel {
 
     /// As [`Accel::build`], with queries by the instructions of `isa`, or the portable ones where the machine lacks them.
     pub fn with_isa(shapes: Vec<Shape>, isa: Isa) -> Self {
-        let bounds = shapes.par_iter().map(Shape::bounds).reduce(|| Bounds::EMPTY, Bounds::union);
-        let division = Division::of(&shapes);
-        let (tree, mut numbers) = match Tree::build(&shapes, &division) {
-            Some((tree, order)) => (Some(tree), order),
-            None => (None, Vec::new()),
-        };
+        let Division { inside, outside, frame, bounds } = Division::of(&shapes);
+        let mut wide = frame.map(|frame| (arrange(&shapes, &inside, &frame), frame));
+        drop(inside);
+        let mut numbers =
+            wide.as_mut().map_or_else(Vec::new, |(wide, _)| mem::take(&mut wide.order));
         let inside = numbers.len();
-        numbers.extend(&division.outside);
+        numbers.reserve_exact(outside.len());
+        numbers.extend(outside);
         let mut places = vec![0; numbers.len()];
         for (place, number) in (0..).zip(&numbers) {
             places[*number as usize] = place;
         }
         let shapes = in_order(shapes, &numbers);
+        let tree = wide.map(|(wide, frame)| Tree::new(wide, frame, &shapes));
+        huge::give_back();
         let mut accel = Self {
             tree,
             #[cfg(feature = "leaf-study")]

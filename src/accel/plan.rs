@@ -15,7 +15,7 @@ use std::{
 use obvhs::bvh2::node::Bvh2Node;
 use rayon::prelude::*;
 
-use super::{build::Binary, collapse::Kind, node::WIDTH};
+use super::{collapse::Kind, huge, node::WIDTH};
 
 /// The cost of a node's test in units of a leaf's; half or twice of it changed no speed by more than chance.
 const NODE_COST: f32 = 1.0;
@@ -41,34 +41,36 @@ pub(super) struct Plans(Vec<[AtomicU32; WIDTH]>);
 
 impl Plans {
     /// Plans the tree; `kinds` are those of the primitives.
-    pub(super) fn of(binary: &Binary, kinds: &[Kind]) -> Self {
+    pub(super) fn of(binary: &[Bvh2Node], kinds: &[Kind]) -> Self {
         let unknown = || std::array::from_fn(|_| AtomicU32::new(0));
-        let plans = Self((0..binary.nodes.len()).into_par_iter().map(|_| unknown()).collect());
-        let (top, subtrees) = divided(&binary.nodes);
+        let mut plans = huge::vec_with_capacity(binary.len());
+        (0..binary.len()).into_par_iter().map(|_| unknown()).collect_into_vec(&mut plans);
+        let plans = Self(plans);
+        let (top, subtrees) = divided(binary);
         subtrees.par_iter().for_each(|root| plans.plan_subtree(binary, kinds, *root));
-        plans.plan(binary, kinds, &top);
+        plans.plan(kinds, &top);
         plans
     }
 
     /// Plans a subtree.
-    fn plan_subtree(&self, binary: &Binary, kinds: &[Kind], root: u32) {
+    fn plan_subtree(&self, binary: &[Bvh2Node], kinds: &[Kind], root: u32) {
         // After reinsertion children may come before their parents, so they are visited in an order of its own.
         let (mut order, mut todo) = (Vec::new(), vec![root]);
         while let Some(k) = todo.pop() {
-            let step = Step::of(&binary.nodes, k);
+            let step = Step::of(binary, k);
             if !step.is_leaf {
                 todo.extend([step.first, step.first + 1]);
             }
             order.push(step);
         }
-        self.plan(binary, kinds, &order);
+        self.plan(kinds, &order);
     }
 
     /// Plans these nodes, the last first.
-    fn plan(&self, binary: &Binary, kinds: &[Kind], steps: &[Step]) {
+    fn plan(&self, kinds: &[Kind], steps: &[Step]) {
         for &Step { node, first, area, is_leaf } in steps.iter().rev() {
             let plan = if is_leaf {
-                let kind = kinds[binary.indices[first as usize] as usize];
+                let kind = kinds[first as usize];
                 Plan { cost: [area; WIDTH - 1], shareable: 1, kind, is_leaf }
             } else {
                 joined(&self.get(first), &self.get(first + 1), area)

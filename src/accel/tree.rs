@@ -6,8 +6,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{
-    build::{self, Division},
-    collapse::{Kind, collapse},
+    build,
+    collapse::{Kind, Wide, collapse},
     frame::Frame,
     huge,
     leaf::{Spheres, Triangles},
@@ -16,6 +16,20 @@ use super::{
     walk::MAX_DEPTH,
 };
 use crate::geometry::Shape;
+
+/// The nodes of the tree over the primitives `inside`, and their order.
+pub(super) fn arrange(shapes: &[Shape], inside: &[u32], frame: &Frame) -> Wide {
+    let boxes = || build::boxes(shapes, inside, frame);
+    let kinds: Vec<Kind> = inside.par_iter().map(|k| Kind::of(&shapes[*k as usize])).collect();
+    let meshes = kinds.iter().take(64).any(|kind| *kind == Kind::Triangle);
+    let wide = collapse(&build::binary(boxes(), meshes), &kinds);
+    let mut wide =
+        if wide.depth > MAX_DEPTH { collapse(&build::balanced(&boxes()), &kinds) } else { wide };
+    for place in &mut wide.order {
+        *place = inside[*place as usize];
+    }
+    wide
+}
 
 /// Nodes and leaves, and the frame in which their boxes are.
 #[derive(Debug)]
@@ -30,34 +44,22 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    /// Builds the tree over `inside`; also returns its primitives in the order of the leaves.
-    pub(super) fn build(shapes: &[Shape], division: &Division) -> Option<(Self, Vec<u32>)> {
-        let (frame, inside) = (division.frame?, &division.inside);
-        let boxes = || build::boxes(shapes, inside, &frame);
-        let kinds: Vec<Kind> = inside.par_iter().map(|k| Kind::of(&shapes[*k as usize])).collect();
-        let meshes = kinds.iter().take(64).any(|kind| *kind == Kind::Triangle);
-        let mut wide = collapse(build::binary(boxes(), meshes), &kinds);
-        if wide.depth > MAX_DEPTH {
-            wide = collapse(build::balanced(&boxes()), &kinds);
-        }
-        let order: Vec<u32> = wide.order.iter().map(|k| inside[*k as usize]).collect();
-        let shape = |place: u32| &shapes[order[place as usize] as usize];
+    /// The tree whose nodes are those of `wide`, over `shapes` in its order.
+    pub(super) fn new(wide: Wide, frame: Frame, shapes: &[Shape]) -> Self {
         let spheres = Spheres::new(&wide.sphere_runs, frame.pad(), |place| {
-            let Shape::Sphere(s) = shape(place) else { unreachable!("a leaf of spheres") };
+            let Shape::Sphere(s) = &shapes[place as usize] else {
+                unreachable!("a leaf of spheres")
+            };
             (frame.point(s.center()), frame.length(s.radius()))
         });
         let triangles = Triangles::new(&wide.triangle_runs, frame.coarseness(), |place| {
-            corners_of(shape(place)).map(|v| frame.point(v))
+            corners_of(&shapes[place as usize]).map(|v| frame.point(v))
         });
         let places = wide.triangle_runs.first().zip(wide.triangle_runs.last());
         let places = places.map_or(0..0, |(a, b)| a.places().start..b.places().end);
         let mut corners = huge::vec_with_capacity(places.len());
-        let numbers = order[places].par_iter();
-        numbers.map(|k| corners_of(&shapes[*k as usize])).collect_into_vec(&mut corners);
-        let mut nodes = huge::vec_with_capacity(wide.nodes.len());
-        nodes.append(&mut wide.nodes);
-        let tree = Self { frame, root: wide.root, nodes, spheres, triangles, corners };
-        Some((tree, order))
+        shapes[places].par_iter().map(corners_of).collect_into_vec(&mut corners);
+        Self { frame, root: wide.root, nodes: wide.nodes, spheres, triangles, corners }
     }
 
     /// The memory of nodes and leaves, in bytes.

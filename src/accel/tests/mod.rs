@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 
-use super::{Accel, Isa, brute};
+use super::{Accel, Isa, brute, division::Division};
 use crate::geometry::{Bounds, Crossing, Hit, Ray, Shape};
 use scenes::{KINDS, Random, shape_of};
 
@@ -250,11 +250,10 @@ fn equal_boxes_and_rows_build_fast_and_flat() {
 fn the_balanced_tree_finds_the_same() {
     let mut random = Random(23);
     let shapes: Vec<Shape> = (0..300).map(|_| scenes::sphere(random.point(), 0.1)).collect();
-    let division = super::build::Division::of(&shapes);
-    let frame = division.frame.expect("finite");
-    let boxes = super::build::boxes(&shapes, &division.inside, &frame);
+    let Division { inside, frame, .. } = Division::of(&shapes);
+    let boxes = super::build::boxes(&shapes, &inside, &frame.expect("finite"));
     let kinds = [super::collapse::Kind::Sphere; 300];
-    let wide = super::collapse::collapse(super::build::balanced(&boxes), &kinds);
+    let wide = super::collapse::collapse(&super::build::balanced(&boxes), &kinds);
     let mut order = wide.order.clone();
     order.sort_unstable();
     assert!(order.into_iter().eq(0..300) && wide.depth <= 9, "depth {}", wide.depth);
