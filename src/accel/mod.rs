@@ -50,6 +50,9 @@ pub use simd::Isa;
 use simd::{Kernel, Simd, dispatch};
 use tree::{Tree, arrange};
 
+/// From so many primitives on, the memory that building took is worth giving back, which takes a millisecond.
+const LARGE: usize = 1 << 16;
+
 /// What [`Accel::run`] runs.
 pub(crate) trait Work {
     /// Must be `#[inline(always)]`, and so must what it calls; else that is compiled for the baseline.
@@ -111,7 +114,9 @@ impl Accel {
         }
         let shapes = in_order(shapes, &numbers);
         let tree = wide.map(|(wide, frame)| Tree::new(wide, frame, &shapes));
-        huge::give_back();
+        if shapes.len() >= LARGE {
+            huge::give_back();
+        }
         let mut accel = Self {
             tree,
             #[cfg(feature = "leaf-study")]
