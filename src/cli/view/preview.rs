@@ -146,7 +146,7 @@ fn fitting([width, height]: [u32; 2], [columns, rows]: [u32; 2]) -> [u32; 2] {
     const SHARE: f64 = 0.9;
     let fill = |side: u32, room: u32| SHARE * f64::from(room) / f64::from(side.max(1));
     let scale = fill(width, columns).min(fill(height, rows)).min(1.0);
-    [width, height].map(|side| ((f64::from(side) * scale) as u32).max(1))
+    [width, height].map(|side| ((f64::from(side) * scale).round() as u32).max(1))
 }
 
 #[cfg(test)]
