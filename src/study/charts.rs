@@ -5,6 +5,7 @@ use super::{
     draw::{Anchor, Color, Drawing, LETTER},
     pareto_front,
     raster::Raster,
+    report::file_name,
     svg::svg,
 };
 
@@ -135,7 +136,7 @@ fn error_against_time(scene: &str, rows: &[&Row]) -> Chart {
     }
     let (width, height) = rows.first().map_or((0, 0), |row| (row.width, row.height));
     plot(
-        &format!("error-{}", scene.replace(|c: char| !c.is_ascii_alphanumeric(), "-")),
+        &format!("error-{}", file_name(scene)),
         &format!("Error against time: {scene}, {width}x{height}"),
         ("seconds", true),
         ("error, levels of 255 (root mean square)", true),

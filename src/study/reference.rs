@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::StudyError;
+use super::{StudyError, report::file_name};
 use crate::{
     Rgb,
     aa::{AntiAliasing, levels::levels},
@@ -58,8 +58,7 @@ impl Reference {
         rays: u32,
         folder: &Path,
     ) -> PathBuf {
-        let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
-        let name: String = name.chars().map(plain).collect();
+        let name = file_name(name);
         let (hash, depth) = (&scene.hash()[..16], scene.depth());
         let version = env!("CARGO_PKG_VERSION");
         folder.join(format!("{name}-{hash}-{width}x{height}-{depth}-{rays}-{version}.f32"))

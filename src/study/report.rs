@@ -126,7 +126,8 @@ pub fn html(rows: &[Row], charts: &[Chart], scenes: &[String]) -> String {
 
 /// A scene's name as that of its files.
 pub fn file_name(scene: &str) -> String {
-    scene.replace(|c: char| !c.is_ascii_alphanumeric(), "-")
+    let plain = scene.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
+    plain.trim_start_matches('-').to_owned()
 }
 
 fn trade(trade: Trade) -> &'static str {
@@ -158,6 +159,12 @@ fn cells(line: &str) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn files_of_a_scene_have_plain_names() {
+        assert_eq!(file_name("spheres:10000"), "spheres-10000");
+        assert_eq!(file_name("/models/a crate.obj"), "models-a-crate-obj");
+    }
 
     fn row(mode: &str) -> Row {
         Row {
