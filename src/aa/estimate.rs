@@ -233,8 +233,8 @@ pub fn bare_sequence_share(points: u32) -> f32 {
 /// The share of the variance that a grid of 2 × 2 samples leaves.
 pub const GRID_OF_FOUR: f32 = 0.068;
 
-/// What interleaved parts of a grid of `side` × `side` samples, their display levels given row by row, differ by: the squared error that their mean would have if
-/// they were independent. The parts are four grids, or three diagonals of 3 × 3 samples.
+/// What interleaved parts of a grid of `side` × `side` samples, their display levels given row by row, differ by: the
+/// squared error that their mean would have if they were independent. The parts are four grids, or three diagonals of 3 × 3 samples.
 ///
 /// They are even patterns as well, whatever they show, so what they leave tells what the whole leaves: for random samples all
 /// of this, at a single edge a third.

@@ -50,7 +50,7 @@ pub use simd::Isa;
 use simd::{Kernel, Simd, dispatch};
 use tree::{Tree, arrange};
 
-/// From so many primitives on, the memory that building took is worth giving back, which takes a millisecond.
+/// From so many primitives on, building takes memory that is worth giving back.
 const LARGE: usize = 1 << 16;
 
 /// What [`Accel::run`] runs.

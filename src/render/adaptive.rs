@@ -3,7 +3,7 @@
 //! What becomes of a pixel depends on the samples within one pixel around it, and on nothing that other pixels decide.
 
 use std::sync::{
-    Mutex, MutexGuard, PoisonError,
+    Mutex, PoisonError,
     atomic::{AtomicU64, Ordering},
 };
 
@@ -11,7 +11,7 @@ use glam::DVec2;
 
 use super::{
     Outcome, Picture,
-    crew::{Crew, Sampler, in_turn, trace_centers},
+    crew::{Crew, Sampler, in_turn, lock, trace_centers},
     goal::Demand,
     look::{Window, corrected, skips_cells},
     outlook::{Outlook, outlooks, tile_of},
@@ -56,10 +56,6 @@ struct Known {
     outlooks: Plane<Outlook>,
 }
 
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 impl Adaptive {
     /// Traces the centres of `area`, and of the pixels around it, so that a part of a picture is that of the whole.
     ///
@@ -101,10 +97,11 @@ impl Adaptive {
                             if has_thin { sampler.least_samples(x as u32, y as u32) } else { 0 };
                         let skips = look.suspect && skips_cells(&centers, x, y);
                         let cells = if skips { LEAST_IN_CELLS } else { 0 };
+                        let error = look.center_error(look.inner);
                         let pixel = Pixel {
                             suspect: look.suspect,
-                            error: look.center_error(look.inner),
-                            expected: look.center_error(look.inner),
+                            error,
+                            expected: error,
                             least: thin.max(cells),
                             contrast: look.contrast,
                             busy: look.busy,
@@ -302,8 +299,7 @@ impl Adaptive {
         let mut demand = Demand::new();
         for ((x, y), pixel) in self.area.pixels().zip(self.known.pixels.values()) {
             if let Some(rays) = next_rays(&self.stages, pixel, self.centers.at(x, y)) {
-                let is_due = pixel.points() < pixel.least;
-                let worth = if is_due { f32::MAX } else { pixel.error / rays };
+                let worth = if pixel.is_due() { f32::MAX } else { pixel.error / rays };
                 demand.add(worth, rays.ceil() as u64);
             }
         }

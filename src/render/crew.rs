@@ -1,6 +1,6 @@
 //! Workers that take tile after tile, and how far they are.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use glam::DVec2;
 use rayon::prelude::*;
@@ -31,6 +31,11 @@ pub trait Sampler {
     }
 }
 
+/// What the mutex guards; a panic elsewhere does not spoil it.
+pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 /// How far all the waves together are.
 pub(super) struct Meter<'a> {
     progress: &'a (dyn Fn(Progress) + Sync),
@@ -44,7 +49,7 @@ impl<'a> Meter<'a> {
 
     /// Reports that `count` more are done; never that all are but by [`Meter::finish`].
     fn add(&self, count: u64) {
-        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut state = lock(&self.state);
         state.done = (state.done + count).min(state.total);
         // Still under the lock, so that progress never goes backwards.
         (self.progress)(*state);
@@ -52,7 +57,7 @@ impl<'a> Meter<'a> {
 
     /// Reports a share of the whole, if that is more than was done.
     pub(super) fn reach(&self, share: f64) {
-        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut state = lock(&self.state);
         let done = (state.total as f64 * share.clamp(0.0, 1.0)) as u64;
         state.done = state.done.max(done);
         (self.progress)(*state);
@@ -84,7 +89,7 @@ impl<S: Sampler + Send> Crew<'_, S> {
         work: impl Fn(&mut S, &mut Scratch, &Area) + Sync,
     ) {
         let idle: Mutex<Vec<(S, Scratch)>> = Mutex::new(Vec::new());
-        let idle = || idle.lock().unwrap_or_else(PoisonError::into_inner);
+        let idle = || lock(&idle);
         each_tile(area, |tile| {
             if stop() {
                 return;
@@ -143,7 +148,7 @@ pub(super) fn trace_centers<S: Sampler + Send>(
         scratch.samples.clear();
         scratch.places.extend(in_turn(tile).map(|(x, y)| center(x, y)));
         sampler.sample(&scratch.places, &mut scratch.samples);
-        let mut centers = centers.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut centers = lock(&centers);
         for ((x, y), sample) in in_turn(tile).zip(&scratch.samples) {
             *centers.at_mut(x, y) = *sample;
         }

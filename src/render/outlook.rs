@@ -29,7 +29,7 @@ impl Outlook {
         for ((x, y), pixel) in tile.pixels().zip(pixels) {
             outlook.expected += f64::from(pixel.expected);
             if let Some(rays) = next_rays(stages, pixel, centers.at(x, y)) {
-                let error = if pixel.points() < pixel.least { f32::INFINITY } else { pixel.error };
+                let error = if pixel.is_due() { f32::INFINITY } else { pixel.error };
                 outlook.error = outlook.error.max(error);
                 outlook.per_ray = outlook.per_ray.max(error / rays);
             }

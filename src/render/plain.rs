@@ -6,7 +6,7 @@ use glam::{DVec2, Vec3};
 
 use super::{
     Outcome, Picture,
-    crew::{Crew, Sampler, each_tile, in_turn, trace_centers},
+    crew::{Crew, Sampler, each_tile, in_turn, lock, trace_centers},
     look::Window,
     plane::{Area, Plane},
 };
@@ -33,7 +33,7 @@ pub(super) fn centers<S: Sampler + Send>(crew: &Crew<S>, area: &Area) -> Picture
     each_tile(area, |tile| {
         let window = Window::of_centers(tile, &centers);
         let own: Vec<f32> = window.looks().iter().map(|look| look.center_error(false)).collect();
-        errors.lock().unwrap_or_else(PoisonError::into_inner).put(tile, own);
+        lock(&errors).put(tile, own);
     });
     Picture {
         colors: centers.into_values().into_iter().map(|sample| sample.color).collect(),
@@ -131,7 +131,7 @@ fn even<S: Sampler + Send>(
                     };
                 }
             }
-            cells.lock().unwrap_or_else(PoisonError::into_inner).put(tile, own);
+            lock(&cells).put(tile, own);
         },
     );
     let cells = cells.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -144,7 +144,7 @@ fn even<S: Sampler + Send>(
             let hidden = cell.alike && look.suspect;
             cell.error + if hidden { unseen * look.contrast } else { 0.0 }
         });
-        errors.lock().unwrap_or_else(PoisonError::into_inner).put(tile, own.collect::<Vec<_>>());
+        lock(&errors).put(tile, own.collect::<Vec<_>>());
     });
     Picture {
         colors: cells.values().iter().map(|cell| cell.color).collect(),

@@ -61,6 +61,11 @@ impl Pixel {
         self.refined.as_ref().map_or(0, |refined| refined.points())
     }
 
+    /// Whether it is to get more samples whatever its error.
+    pub(super) fn is_due(&self) -> bool {
+        self.points() < self.least
+    }
+
     /// Takes over the errors after a stage.
     fn judge(&mut self, refined: &Refined) {
         (self.error, self.expected) = refined.errors(self.contrast, self.busy);
