@@ -158,7 +158,7 @@ def write(rows):
         found = re.fullmatch(rf'spheres (\S+), (.*), {max(options.threads)} threads', group)
         if found and measure == 'trace':
             name = {'whitted': 'whitted', 'povray': 'POV-Ray'}[program]
-            frames.setdefault(f'{name}, {found[2]}', []).append((float(found[1]), value))
+            frames.setdefault(f'{name}, {found[2].replace("1 rays", "1 ray")}', []).append((float(found[1]), value))
     if frames:
         chart.write(os.path.join(options.out, 'frames.svg'), f'Frame time of the sphere scenes, 600 x 600, {max(options.threads)} threads',
                     'spheres', 'seconds', {name: sorted(points) for name, points in frames.items()})
