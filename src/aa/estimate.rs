@@ -4,6 +4,7 @@
 //! what can be seen: of the variance of a pixel's samples, or of the contrast to its neighbours. None depends on the scene.
 
 use glam::Vec3;
+use serde::{Deserialize, Serialize};
 
 use super::levels::squared_distance;
 
@@ -113,7 +114,7 @@ impl Look {
 }
 
 /// The mean and spread of a pixel's samples, and how many different things they met.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Spread {
     /// The display levels that the deviations are from, so that their squares stay small.
     origin: Vec3,

@@ -1,13 +1,14 @@
 //! A pixel that got more than its centre.
 
 use glam::Vec3;
+use serde::{Deserialize, Serialize};
 
 use super::estimate::{BUSY, Spread, all_alike, quarters_share, sequence_share, sequence_unseen};
 use super::levels::{levels, squared_distance};
 use crate::color::Rgb;
 
 /// A camera ray's answer.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
     /// Linear light, each channel clamped to `[0, 1]`.
     pub color: Rgb,
@@ -20,7 +21,7 @@ pub struct Sample {
 }
 
 /// How far a pixel is refined: by centre and corners, and so many samples of its sequence.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stage {
     /// The samples of the sequence; 0 is centre and corners alone.
     pub points: u32,
@@ -50,7 +51,7 @@ pub fn stages(most: u32) -> Vec<Stage> {
 }
 
 /// The samples of a pixel so far.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Refined {
     /// Half the centre and an eighth of each corner.
     cross: Rgb,
@@ -62,7 +63,7 @@ pub struct Refined {
 }
 
 /// The sums of the samples' display levels over each quarter of the sequence so far.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Quarters {
     sums: [Vec3; 4],
     counts: [u32; 4],

@@ -1,7 +1,8 @@
 //! A render whose finished blocks are kept, in memory and from time to time on disk.
 
 use std::{
-    path::Path,
+    io,
+    path::{Path, PathBuf},
     sync::{
         Mutex, MutexGuard, PoisonError,
         atomic::{AtomicBool, Ordering},
@@ -9,15 +10,21 @@ use std::{
     time::{Duration, Instant},
 };
 
-use super::{Checkpoint, CheckpointError, record::Record};
+use super::{
+    Checkpoint, CheckpointError,
+    record::{Entry, Record},
+};
 use crate::{
     color::Rgb,
     film::{FileError, Film, Label, Tile},
-    render::{Account, Block, Effort, Outcome, Progress, Rendering, Sink},
+    render::{Account, Block, Effort, Outcome, Progress, Rendering, Sink, Unfinished},
 };
 
 /// The least time between two looks at a picture towards a goal, which are copies of all of it.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(250);
+
+/// How many times as long as writing an unfinished picture took, it is not written again.
+const REST: u32 = 50;
 
 /// A picture in the making.
 pub struct Job<'a> {
@@ -26,6 +33,9 @@ pub struct Job<'a> {
     stop: &'a AtomicBool,
     progress: &'a (dyn Fn(Progress) + Sync),
     state: Mutex<State>,
+    /// Whether an unfinished picture is to be written.
+    is_due: AtomicBool,
+    kept: Mutex<Kept>,
 }
 
 struct State {
@@ -35,36 +45,65 @@ struct State {
     /// Finished blocks that are not in the checkpoint yet.
     unsaved: Vec<usize>,
     outcome: Outcome,
-    /// When a picture towards a goal was looked at last.
+    /// When a picture towards a goal was looked at last, and its estimated error when it was read or stopped.
     looked: Instant,
+    rmse: Option<f64>,
+}
+
+/// What is on disk.
+struct Kept {
+    /// Where the checkpoint is to be; nowhere if none is kept.
+    path: Option<PathBuf>,
+    checkpoint: Option<Checkpoint>,
+    /// An unfinished picture that was read.
+    unfinished: Option<Unfinished>,
+    /// The next one is not written before.
+    next: Instant,
+    /// Why the last one was not written.
+    failure: Option<FileError>,
 }
 
 impl<'a> Job<'a> {
-    /// A picture of which nothing is finished: the part that `label` names, in blocks at `places`. No block is begun once `stop`
-    /// is set.
+    /// A picture of which nothing is finished: the part that `label` names, in blocks at `places`, whose checkpoint is at `path`. No
+    /// block is begun once `stop` is set.
     pub fn new(
         label: Label,
         places: Vec<Tile>,
+        path: Option<PathBuf>,
         stop: &'a AtomicBool,
         progress: &'a (dyn Fn(Progress) + Sync),
     ) -> Self {
         let part = label.place();
+        let now = Instant::now();
         let state = State {
             film: Film::new(part.width(), part.height()),
             accounts: vec![None; places.len()],
             unsaved: Vec::new(),
             outcome: Outcome::default(),
-            looked: Instant::now(),
+            looked: now,
+            rmse: None,
         };
-        Self { label, places, stop, progress, state: Mutex::new(state) }
+        let (is_due, state) = (AtomicBool::new(false), Mutex::new(state));
+        let kept = Kept { path, checkpoint: None, unfinished: None, next: now, failure: None };
+        Self { label, places, stop, progress, state, is_due, kept: Mutex::new(kept) }
     }
 
-    /// Takes the blocks of the checkpoint at `path`.
+    /// Takes what is in the checkpoint.
     ///
     /// # Errors
     /// As [`Checkpoint::open`].
-    pub fn resume(&self, path: &Path) -> Result<Checkpoint, CheckpointError> {
-        Checkpoint::open(path, &self.label, &self.places, |record| self.restore(&record))
+    pub fn resume(&self) -> Result<(), CheckpointError> {
+        let mut kept = self.kept();
+        let Some(path) = &kept.path else { return Ok(()) };
+        let mut unfinished = None;
+        let opened = Checkpoint::open(path, &self.label, &self.places, |entry| match entry {
+            Entry::Block(record) => self.restore(&record),
+            Entry::Unfinished(it) => unfinished = Some(*it),
+        })?;
+        kept.checkpoint = Some(opened);
+        self.state().rmse = unfinished.as_ref().and_then(Unfinished::estimated_rmse);
+        kept.unfinished = unfinished;
+        Ok(())
     }
 
     fn restore(&self, record: &Record) {
@@ -74,11 +113,33 @@ impl<'a> Job<'a> {
         state.accounts[record.number] = Some(record.account);
     }
 
-    /// Writes what is finished but not in `checkpoint` yet, which is made if there is none, and made anew if it was deleted.
+    /// Where the checkpoint is to be.
+    pub fn checkpoint_path(&self) -> Option<PathBuf> {
+        self.kept().path.clone()
+    }
+
+    /// Whether there is a checkpoint to go on from.
+    pub fn has_checkpoint(&self) -> bool {
+        self.kept().checkpoint.is_some()
+    }
+
+    /// Deletes the checkpoint.
     ///
     /// # Errors
-    /// The file cannot be written; what it had is kept, and nothing is forgotten.
-    pub fn save(&self, checkpoint: &mut Option<Checkpoint>, path: &Path) -> Result<(), FileError> {
+    /// Those of the system.
+    pub fn remove_checkpoint(&self) -> io::Result<()> {
+        let checkpoint = self.kept().checkpoint.take().filter(Checkpoint::is_there);
+        checkpoint.map_or(Ok(()), Checkpoint::remove)
+    }
+
+    /// Writes what is finished but not in the checkpoint yet, which is made if there is none, and made anew if it was deleted. A picture
+    /// towards an error or until a time is written by the threads that render it, soon.
+    ///
+    /// # Errors
+    /// The file cannot be written, or could not the last time; what it had is kept, and nothing is forgotten.
+    pub fn save(&self) -> Result<(), FileError> {
+        let mut kept = self.kept();
+        let Kept { path: Some(path), checkpoint, .. } = &mut *kept else { return Ok(()) };
         let is_lost = checkpoint.as_ref().is_none_or(|checkpoint| !checkpoint.is_there());
         let numbers: Vec<usize> = {
             let mut state = self.state();
@@ -90,7 +151,8 @@ impl<'a> Job<'a> {
             }
         };
         if numbers.is_empty() {
-            return Ok(());
+            self.is_due.store(Instant::now() >= kept.next, Ordering::Relaxed);
+            return kept.failure.take().map_or(Ok(()), Err);
         }
         let mut left = numbers.as_slice();
         let saved = self.write(checkpoint, is_lost, path, &mut left);
@@ -153,6 +215,12 @@ impl<'a> Job<'a> {
         self.state().outcome
     }
 
+    /// The estimated error of a picture towards an error or until a time that was read or stopped, if each of its pixels has a ray:
+    /// root mean square of all channels, in levels of 255.
+    pub fn estimated_rmse(&self) -> Option<f64> {
+        self.state().rmse
+    }
+
     /// What the picture's file says of itself, as it is now.
     pub fn label(&self) -> Label {
         Label { missing: self.missing(), ..self.label.clone() }
@@ -180,6 +248,10 @@ impl<'a> Job<'a> {
         }
     }
 
+    fn kept(&self) -> MutexGuard<'_, Kept> {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -195,10 +267,34 @@ impl Sink for Job<'_> {
         let place = block.place.minus(&self.label.place());
         state.film.blit(&place, &block.colors, &block.samples);
         state.outcome = block.outcome;
-        if !block.samples.contains(&0) {
+        if !block.outcome.is_stopped {
             state.accounts[block.number] = Some(block.account);
             state.unsaved.push(block.number);
+        } else if !block.samples.contains(&0) {
+            state.rmse = Some((block.account.squared_error / block.samples.len() as f64).sqrt());
         }
+    }
+
+    fn wants_unfinished(&self) -> bool {
+        self.is_due.load(Ordering::Relaxed)
+    }
+
+    fn keep(&self, unfinished: &Unfinished) {
+        let mut kept = self.kept();
+        self.is_due.store(false, Ordering::Relaxed);
+        let Kept { path: Some(path), checkpoint, .. } = &mut *kept else { return };
+        let started = Instant::now();
+        let made =
+            Checkpoint::create_unfinished(path, &self.label, unfinished, checkpoint.as_ref());
+        match made {
+            Ok(checkpoint) => kept.checkpoint = Some(checkpoint),
+            Err(error) => kept.failure = Some(error),
+        }
+        kept.next = Instant::now() + started.elapsed() * REST;
+    }
+
+    fn unfinished(&self) -> Option<Unfinished> {
+        self.kept().unfinished.take()
     }
 
     fn show(&self, place: &Tile, colors: &[Rgb], samples: &[u32]) {

@@ -3,9 +3,13 @@
 //! A checkpoint is a file that only grows: a head that says of which picture it is, then a record for each finished
 //! [block](crate::render::Block). Each has a checksum, so whatever ends the program in the midst of writing costs at most the
 //! last record. The head is written to another file that is then renamed, so that a checkpoint always has a whole one.
+//!
+//! A picture towards an error or until a time has no block that is finished before the others; all that is known of it is written
+//! behind the head instead, to another file that then takes the place of the last one.
 
 mod job;
 mod record;
+mod summed;
 
 use std::{
     fs::{self, File},
@@ -16,10 +20,14 @@ use std::{
 use thiserror::Error;
 
 pub use job::Job;
-pub use record::Record;
-use record::checksum;
+use record::write_unfinished;
+pub use record::{Entry, Record};
+use summed::{SUM_BYTES, checksum};
 
-use crate::film::{FileError, Label, Tile, WholeFile};
+use crate::{
+    film::{FileError, Label, Tile, WholeFile},
+    render::Unfinished,
+};
 
 /// The first line of every checkpoint.
 const MAGIC: &[u8] = b"whitted checkpoint 1\n";
@@ -79,23 +87,59 @@ impl Checkpoint {
     /// # Errors
     /// The file cannot be written.
     pub fn create(path: &Path, label: &Label) -> Result<Self, FileError> {
-        let error = |source| FileError::Write { path: path.to_owned(), source };
+        Self::set_aside(path)?;
+        Self::write(path, label, |_| Ok(()))
+    }
+
+    /// A checkpoint of a picture that is not finished anywhere, in the place of `last`, the one before.
+    ///
+    /// # Errors
+    /// The file cannot be written; the one before, or none, is then still there.
+    pub fn create_unfinished(
+        path: &Path,
+        label: &Label,
+        unfinished: &Unfinished,
+        last: Option<&Self>,
+    ) -> Result<Self, FileError> {
+        if last.is_none() {
+            Self::set_aside(path)?;
+        }
+        Self::write(path, label, |writer| write_unfinished(unfinished, writer))
+    }
+
+    /// Gives a file that is in the way another name.
+    fn set_aside(path: &Path) -> Result<(), FileError> {
         if path.exists() {
             let mut old = path.as_os_str().to_owned();
             old.push(".old");
-            fs::rename(path, old).map_err(error)?;
+            fs::rename(path, old)
+                .map_err(|source| FileError::Write { path: path.to_owned(), source })?;
         }
+        Ok(())
+    }
+
+    /// A file with a head and what `write` puts behind it, to which more can be appended.
+    fn write(
+        path: &Path,
+        label: &Label,
+        write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<Self, FileError> {
+        let error = |source| FileError::Write { path: path.to_owned(), source };
         let head = head(label);
         if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
             fs::create_dir_all(folder).map_err(error)?;
         }
-        WholeFile::prepare(path)?.commit(|writer| writer.write_all(&head))?;
+        WholeFile::prepare(path)?.commit(|mut writer| {
+            writer.write_all(&head)?;
+            write(&mut writer)
+        })?;
         let file = File::options().append(true).open(path).map_err(error)?;
-        Ok(Self { path: path.to_owned(), file, length: head.len() as u64 })
+        let length = file.metadata().map_err(error)?.len();
+        Ok(Self { path: path.to_owned(), file, length })
     }
 
-    /// Opens the checkpoint of the picture that `label` describes, in blocks at `places`, and hands each block to `put`. What is
-    /// behind the last whole record is cut off.
+    /// Opens the checkpoint of the picture that `label` describes, in blocks at `places`, and hands each entry to `put`. What is
+    /// behind the last whole one is cut off.
     ///
     /// # Errors
     /// The file cannot be read, is damaged, or is of another picture.
@@ -103,7 +147,7 @@ impl Checkpoint {
         path: &Path,
         label: &Label,
         places: &[Tile],
-        mut put: impl FnMut(Record),
+        mut put: impl FnMut(Entry),
     ) -> Result<Self, CheckpointError> {
         let unread = |source| CheckpointError::Read { path: path.to_owned(), source };
         let file = File::options().read(true).append(true).open(path).map_err(unread)?;
@@ -122,9 +166,9 @@ impl Checkpoint {
             let what = differences.join("; ");
             return Err(CheckpointError::Differs { path: path.to_owned(), what });
         }
-        while let Some(record) = Record::read(&mut reader, places).map_err(unread)? {
-            length += record.bytes();
-            put(record);
+        while let Some((entry, bytes)) = Entry::read(&mut reader, places).map_err(unread)? {
+            length += bytes;
+            put(entry);
         }
         drop(reader);
         file.set_len(length).map_err(unread)?;
@@ -198,7 +242,7 @@ fn read_head(reader: &mut (impl Read + Seek)) -> io::Result<Option<(Label, u64)>
         return Ok(None);
     }
     head.resize(start + length as usize, 0);
-    let mut sum = [0; 8];
+    let mut sum = [0; SUM_BYTES];
     if !read_all(reader, &mut head[start..])?
         || !read_all(reader, &mut sum)?
         || sum != checksum(&head)

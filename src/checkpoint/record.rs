@@ -1,13 +1,69 @@
-//! A finished block as bytes.
+//! Finished blocks, and pictures on their way to a goal, as bytes.
 
-use std::io::{self, Read};
+use std::io::{self, Read, Write};
 
-use super::read_all;
+use super::{
+    read_all,
+    summed::{SUM_BYTES, Summed, checksum},
+};
 use crate::{
     color::Rgb,
     film::Tile,
-    render::{Account, RayCounts},
+    render::{Account, RayCounts, Unfinished},
 };
+
+/// What stands in a checkpoint.
+pub enum Entry {
+    /// A finished block.
+    Block(Record),
+    /// The whole picture on its way to a goal.
+    Unfinished(Box<Unfinished>),
+}
+
+/// In the place of a block's number, before an unfinished picture.
+const UNFINISHED: u32 = u32::MAX;
+
+impl Entry {
+    /// The next entry of the checkpoint of a picture in blocks at `places`, and the bytes that it takes; none where the file ends,
+    /// or from where on it is damaged.
+    pub(super) fn read(reader: &mut impl Read, places: &[Tile]) -> io::Result<Option<(Self, u64)>> {
+        let mut number = [0; 4];
+        if !read_all(reader, &mut number)? {
+            return Ok(None);
+        }
+        if u32::from_le_bytes(number) == UNFINISHED {
+            let read = read_unfinished(reader);
+            return Ok(read.map(|(it, bytes)| (Self::Unfinished(Box::new(it)), bytes)));
+        }
+        let record = Record::read(reader, number, places)?;
+        Ok(record.map(|record| {
+            let bytes = record.bytes();
+            (Self::Block(record), bytes)
+        }))
+    }
+}
+
+/// Writes an unfinished picture, its checksum behind it.
+pub(super) fn write_unfinished(unfinished: &Unfinished, writer: &mut dyn Write) -> io::Result<()> {
+    let mut summed = Summed::new(&mut *writer);
+    summed.write_all(&UNFINISHED.to_le_bytes())?;
+    if let Err(error) = postcard::to_io(unfinished, &mut summed) {
+        return Err(summed.take_failure().unwrap_or_else(|| io::Error::other(error)));
+    }
+    let (sum, _) = summed.sum();
+    writer.write_all(&sum)
+}
+
+/// The picture behind the mark, and the bytes of the entry; none if it is damaged.
+fn read_unfinished(reader: &mut impl Read) -> Option<(Unfinished, u64)> {
+    let mut summed = Summed::new(&mut *reader);
+    summed.add(&UNFINISHED.to_le_bytes());
+    let (unfinished, _) = postcard::from_io((&mut summed, &mut [0; 8])).ok()?;
+    let (sum, bytes) = summed.sum();
+    let mut there = [0; SUM_BYTES];
+    let is_whole = read_all(reader, &mut there).ok()? && there == sum;
+    is_whole.then_some((unfinished, bytes + SUM_BYTES as u64))
+}
 
 /// What a checkpoint keeps of a block.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,16 +83,10 @@ const HEAD_BYTES: usize = 4 + 8 * 8;
 /// Colour and samples of a pixel.
 const PIXEL_BYTES: usize = 16;
 
-/// Eight bytes by which damage is found.
-pub(super) fn checksum(bytes: &[u8]) -> [u8; 8] {
-    let hash = blake3::hash(bytes);
-    std::array::from_fn(|k| hash.as_bytes()[k])
-}
-
 impl Record {
     /// The bytes that it takes.
     pub(super) fn bytes(&self) -> u64 {
-        (HEAD_BYTES + PIXEL_BYTES * self.colors.len() + 8) as u64
+        (HEAD_BYTES + PIXEL_BYTES * self.colors.len() + SUM_BYTES) as u64
     }
 
     /// As it stands in a file.
@@ -58,18 +108,15 @@ impl Record {
         bytes
     }
 
-    /// The next record of a picture in blocks at `places`; none where the file ends, or from where on it is damaged.
-    pub(super) fn read(reader: &mut impl Read, places: &[Tile]) -> io::Result<Option<Self>> {
-        let mut bytes = vec![0; HEAD_BYTES];
-        if !read_all(reader, &mut bytes)? {
-            return Ok(None);
-        }
-        let number = u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]) as usize;
+    /// The record behind its number; none if it is damaged.
+    fn read(reader: &mut impl Read, number: [u8; 4], places: &[Tile]) -> io::Result<Option<Self>> {
+        let mut bytes = number.to_vec();
+        let number = u32::from_le_bytes(number) as usize;
         let Some(place) = places.get(number) else { return Ok(None) };
         let pixels = place.width() as usize * place.height() as usize;
         bytes.resize(HEAD_BYTES + PIXEL_BYTES * pixels, 0);
-        let mut sum = [0; 8];
-        let is_whole = read_all(reader, &mut bytes[HEAD_BYTES..])? && read_all(reader, &mut sum)?;
+        let mut sum = [0; SUM_BYTES];
+        let is_whole = read_all(reader, &mut bytes[4..])? && read_all(reader, &mut sum)?;
         if !is_whole || sum != checksum(&bytes) {
             return Ok(None);
         }

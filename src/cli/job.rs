@@ -2,7 +2,6 @@
 
 use std::{
     panic::resume_unwind,
-    path::Path,
     time::{Duration, Instant},
 };
 
@@ -20,10 +19,7 @@ use super::progress::Reporter;
 use super::signals::Signals;
 use super::streams;
 use super::target::Picture;
-use super::watch::{Course, Kept, Watcher};
-
-/// What is said of a picture towards a goal that was interrupted.
-pub(crate) const NO_CHECKPOINT: &str = "nothing goes on from it: --max-error and --time-limit keep no checkpoint, --aa adaptive:ERROR does";
+use super::watch::{Course, Watcher};
 
 /// What is rendered, and where to.
 pub(crate) struct Order<'a> {
@@ -39,8 +35,6 @@ pub(crate) struct Finished {
     pub(crate) rendering: Rendering,
     /// The time that writing took, in seconds.
     pub(crate) write: f64,
-    /// The signal that ended it before its goal.
-    pub(crate) interrupted: Option<u8>,
 }
 
 /// Renders a picture and writes it; if it is stopped, writes what there is of it, and fails with the signal.
@@ -69,12 +63,9 @@ pub(crate) fn run(
         course.report(progress);
         reporter.report(&progress);
     };
-    let job = Job::new((*label).clone(), places, stop, &report);
-    let path = picture.path().filter(|_| options.goal == Goal::Mode).map(Checkpoint::path_for);
-    let mut kept = Kept { path, checkpoint: None };
-    if let Some(path) = &kept.path {
-        kept.checkpoint = find(&job, path, args)?;
-    }
+    let path = picture.path().map(Checkpoint::path_for);
+    let job = Job::new((*label).clone(), places, path, stop, &report);
+    find(&job, args)?;
     reporter.begin(job.share_done());
     let watcher = Watcher {
         job: &job,
@@ -83,20 +74,19 @@ pub(crate) fn run(
         interval: Duration::from_secs_f64(args.checkpoint),
         stopping: match options.goal {
             Goal::Mode => "stopping: blocks in work are finished; once more stops at once",
-            _ => "stopping: the picture is written as it is; once more stops at once",
+            _ => "stopping: the picture is kept as it is; once more stops at once",
         },
         note: &|line| note(args, line),
     };
-    let effort = render(order, &job, &watcher, &mut kept, preview)?;
+    let effort = render(order, &job, &watcher, preview)?;
     reporter.end();
     if !job.is_complete() {
-        return Err(leave(order, &job, kept));
+        return Err(leave(order, &job));
     }
     let writing = Instant::now();
-    let interrupted = signals.received().filter(|_| job.outcome().cut);
-    finish(order, &job, kept, interrupted.is_some())?;
+    finish(order, &job)?;
     let write = writing.elapsed().as_secs_f64();
-    Ok(Finished { rendering: job.into_rendering(&effort), write, interrupted })
+    Ok(Finished { rendering: job.into_rendering(&effort), write })
 }
 
 /// Writes a line that is not an error, unless nobody or only a program reads it.
@@ -106,37 +96,38 @@ fn note(args: &RenderArgs, line: &str) {
     }
 }
 
-/// The checkpoint to go on from, if that is wanted and there is one.
-fn find(job: &Job, path: &Path, args: &RenderArgs) -> Result<Option<Checkpoint>, Failure> {
+/// Takes what is in the checkpoint, if that is wanted and there is one.
+fn find(job: &Job, args: &RenderArgs) -> Result<(), Failure> {
+    let Some(path) = job.checkpoint_path() else { return Ok(()) };
+    let name = path.display();
     match (path.exists(), args.resume) {
-        (false, false) => Ok(None),
+        (false, false) => {}
         (false, true) => {
-            note(
-                args,
-                &format!("{}: there is no checkpoint; starting from the beginning", path.display()),
-            );
-            Ok(None)
+            note(args, &format!("{name}: there is no checkpoint; starting from the beginning"));
         }
         (true, false) => {
             note(
                 args,
                 &format!(
-                    "warning: {} is left from an interrupted render; --resume goes on from it (without, its name gets .old at \
-                 the first new checkpoint)",
-                    path.display()
+                    "warning: {name} is left from an interrupted render; --resume goes on from it (without, its name gets .old at \
+                     the first new checkpoint)"
                 ),
             );
-            Ok(None)
         }
-        (true, true) => match job.resume(path) {
-            Ok(checkpoint) => {
-                let percent = 100.0 * job.share_done();
-                note(args, &format!("going on from {} with {percent:.0} % done", path.display()));
-                Ok(Some(checkpoint))
-            }
-            Err(error @ CheckpointError::Read { .. }) => Err(error.into()),
-            Err(error) => Err(Failure::mismatch(error)),
+        (true, true) => match job.resume() {
+            Ok(()) => note(args, &format!("going on from {name} {}", so_far(job))),
+            Err(error @ CheckpointError::Read { .. }) => return Err(error.into()),
+            Err(error) => return Err(Failure::mismatch(error)),
         },
+    }
+    Ok(())
+}
+
+/// How far the picture is.
+fn so_far(job: &Job) -> String {
+    match job.estimated_rmse() {
+        Some(error) => format!("off by about {error:.2} of 255 levels"),
+        None => format!("with {:.0} % done", 100.0 * job.share_done()),
     }
 }
 
@@ -145,7 +136,6 @@ fn render(
     order: &Order,
     job: &Job,
     watcher: &Watcher,
-    kept: &mut Kept,
     preview: &mut Preview,
 ) -> Result<Effort, RenderError> {
     let course = watcher.course;
@@ -160,7 +150,7 @@ fn render(
             Preview::Terminal(terminal) => (Some(terminal), None),
             Preview::Window(window) => (None, Some(window)),
         };
-        scope.spawn(|| watcher.watch(kept, terminal));
+        scope.spawn(|| watcher.watch(terminal));
         let Some(window) = window else { return work() };
         let work = scope.spawn(work);
         window.show(job, course);
@@ -169,66 +159,50 @@ fn render(
 }
 
 /// Keeps what there is of a stopped picture, and says how to go on.
-fn leave(order: &Order, job: &Job, mut kept: Kept) -> Failure {
+fn leave(order: &Order, job: &Job) -> Failure {
     let Some(signal) = order.signals.received() else {
         return anyhow::anyhow!("the render ended early without a reason").into();
     };
-    let done = job.share_done();
-    if done == 0.0 {
+    if job.share_done() == 0.0 {
         return Failure::stopped(signal, "before anything was finished; nothing is written");
     }
-    let mut lines = vec![format!("with {:.0} % done", 100.0 * done)];
-    let mut can_resume = false;
-    if let Some(path) = &kept.path {
-        match job.save(&mut kept.checkpoint, path) {
-            Ok(()) => {
-                lines.push(format!("checkpoint: {}", path.display()));
-                can_resume = true;
-            }
-            Err(error) => {
-                lines.push(format!("no further checkpoint: {error}"));
-                can_resume = kept.checkpoint.is_some();
-            }
-        }
+    let mut lines = vec![so_far(job)];
+    match (job.save(), job.checkpoint_path().filter(|_| job.has_checkpoint())) {
+        (Ok(()), Some(path)) => lines.push(format!("checkpoint: {}", path.display())),
+        (Ok(()), None) => {}
+        (Err(error), _) => lines.push(format!("no further checkpoint: {error}")),
     }
-    let label = job.label();
+    let mut label = job.label();
+    if order.options.goal != Goal::Mode {
+        // Not the picture of its other options, even if each pixel has a ray.
+        label.options.push_str(" interrupted=yes");
+    }
     match job.with_film(|film| order.picture.write(film, &label)) {
         Ok(()) => lines.push(format!("picture so far: {}", order.picture.name())),
         Err(failure) => lines.push(format!("the picture so far is not written: {failure}")),
     }
-    if can_resume {
+    if job.has_checkpoint() {
         lines.push(format!("go on with: {}", resuming_command()));
-    }
-    if order.options.goal != Goal::Mode {
-        lines.push(NO_CHECKPOINT.to_owned());
     }
     Failure::stopped(signal, &lines.join("\n  "))
 }
 
 /// Writes the picture and deletes its checkpoint; if it cannot be written, brings the checkpoint up to date instead.
-fn finish(order: &Order, job: &Job, mut kept: Kept, interrupted: bool) -> Result<(), Failure> {
-    let mut label = order.label.clone();
-    if interrupted {
-        // Not the picture of its other options, whatever its goal.
-        label.options.push_str(" interrupted=yes");
-    }
-    let written = job.with_film(|film| order.picture.write(film, &label));
+fn finish(order: &Order, job: &Job) -> Result<(), Failure> {
+    let written = job.with_film(|film| order.picture.write(film, order.label));
+    let Some(path) = job.checkpoint_path() else { return written };
+    let path = path.display();
     let Err(failure) = written else {
-        if let Some(checkpoint) = kept.checkpoint.filter(Checkpoint::is_there) {
-            let path = checkpoint.path().display().to_string();
-            if let Err(error) = checkpoint.remove() {
-                streams::note(&format!("warning: {path}: not deleted ({error})"));
-            }
+        if let Err(error) = job.remove_checkpoint() {
+            streams::note(&format!("warning: {path}: not deleted ({error})"));
         }
         return Ok(());
     };
-    let Some(path) = &kept.path else { return Err(failure) };
-    let saved = job.save(&mut kept.checkpoint, path);
-    if saved.is_ok() || kept.checkpoint.is_some() {
+    let saved = job.save();
+    if saved.is_ok() || job.has_checkpoint() {
         let how = if saved.is_ok() { "all" } else { "a part" };
         streams::note(&format!(
-            "{how} of the picture is kept in {}; when there is room for it, go on with: {}",
-            path.display(),
+            "{how} of the picture is kept in {path}; when there is room for it, go on with: {}",
             resuming_command()
         ));
     }

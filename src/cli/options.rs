@@ -42,17 +42,15 @@ pub(crate) fn check_classic(args: &RenderArgs) -> Result<(), Failure> {
     }
 }
 
-/// A picture whose pixels depend on each other, or on the clock, cannot be rendered in parts or go on later.
+/// A picture whose pixels depend on each other, or on the clock, cannot be rendered in parts.
 pub(crate) fn check_parts(args: &RenderArgs) -> Result<(), Failure> {
     let goal = if args.max_error.is_some() { "--max-error" } else { "--time-limit" };
     let has_goal = args.max_error.is_some() || args.time_limit.is_some();
-    for (flag, is_given) in [("--tile", args.tile.is_some()), ("--resume", args.resume)] {
-        if is_given && has_goal {
-            return Err(Failure::usage(anyhow!(
-                "{flag} needs pixels that depend on the scene and options alone, but {goal} shares the rays out over the \
-                 whole picture; use --aa adaptive:ERROR instead"
-            )));
-        }
+    if args.tile.is_some() && has_goal {
+        return Err(Failure::usage(anyhow!(
+            "--tile needs pixels that depend on the scene and options alone, but {goal} shares the rays out over the whole \
+             picture; use --aa adaptive:ERROR instead"
+        )));
     }
     let several = args.tile.as_ref().is_some_and(|shares| shares.0.len() > 1);
     for (flag, path) in [("--output", &args.output), ("--stats", &args.stats)] {

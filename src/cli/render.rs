@@ -119,11 +119,11 @@ fn perform(
         }
         return Ok(());
     }
-    let Finished { rendering, write, interrupted } = if args.rules == Rules::Classic {
+    let Finished { rendering, write } = if args.rules == Rules::Classic {
         let rendering = render_classic(scene, args.threads)?;
         let writing = Instant::now();
         picture.write(&rendering.film, label)?;
-        Finished { rendering, write: writing.elapsed().as_secs_f64(), interrupted: None }
+        Finished { rendering, write: writing.elapsed().as_secs_f64() }
     } else {
         job::run(&Order { scene, options, label, picture, signals }, args, preview)?
     };
@@ -135,17 +135,10 @@ fn perform(
             .write(&Statistics::new(scene, options.aa, &rendering, measured, seconds).to_json()?)?;
     }
     if !is_silent {
-        for warning in warnings(&rendering, args, interrupted.is_some()) {
+        for warning in warnings(&rendering, args) {
             streams::note(&format!("warning: {warning}"));
         }
-        streams::note(&summary(
-            &picture.name(),
-            options.aa,
-            &rendering,
-            measured,
-            total,
-            interrupted.is_some(),
-        ));
+        streams::note(&summary(&picture.name(), options.aa, &rendering, measured, total));
         if args.rules == Rules::Classic {
             let RayCounts { camera_hit, reflected, refracted, shadow, .. } = rendering.rays;
             streams::note(&format!(
@@ -154,11 +147,7 @@ fn perform(
             ));
         }
     }
-    interrupted.map_or(Ok(()), |signal| {
-        let name = picture.name();
-        let text = format!("before its goal\n  picture so far: {name}\n  {}", job::NO_CHECKPOINT);
-        Err(Failure::stopped(signal, &text))
-    })
+    Ok(())
 }
 
 /// The error against the reference, as the picture file will have it.
@@ -169,10 +158,10 @@ fn measure(film: &Film, reference: &RgbImage) -> Result<f64, Failure> {
 }
 
 /// What was aimed at but not reached.
-fn warnings(rendering: &Rendering, args: &RenderArgs, is_interrupted: bool) -> Vec<String> {
+fn warnings(rendering: &Rendering, args: &RenderArgs) -> Vec<String> {
     let outcome = &rendering.outcome;
     let mut warnings = Vec::new();
-    if let Some(wanted) = outcome.missed_error.filter(|_| !is_interrupted) {
+    if let Some(wanted) = outcome.missed_error {
         warnings.push(format!(
             "--max-error {wanted} is not reached: the estimated error is {:.3} levels with the most rays a pixel may \
              get; allow more, such as --aa adaptive:0,4096",
@@ -195,10 +184,8 @@ fn summary(
     rendering: &Rendering,
     measured: Option<f64>,
     total: f64,
-    is_interrupted: bool,
 ) -> String {
     let mode = match (rendering.outcome.cut, rendering.outcome.per_ray) {
-        (true, _) if is_interrupted => "adaptive until it was interrupted".to_owned(),
         (true, _) => "adaptive until the time was up".to_owned(),
         (_, Some(per_ray)) => format!("adaptive to {per_ray:.4} squared levels per ray"),
         _ => aa.to_string(),

@@ -1,7 +1,6 @@
 //! What is done beside a render: checkpoints, what is said of a signal, the preview in a terminal.
 
 use std::{
-    path::PathBuf,
     sync::{
         Condvar, Mutex, PoisonError,
         atomic::{AtomicBool, AtomicU64, Ordering},
@@ -9,7 +8,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use whitted::checkpoint::{Checkpoint, Job};
+use whitted::checkpoint::Job;
 use whitted::render::Progress;
 
 use super::preview::Terminal;
@@ -18,14 +17,6 @@ use super::preview::Terminal;
 const WATCH: Duration = Duration::from_millis(100);
 /// How often the preview is drawn.
 const PREVIEW: Duration = Duration::from_millis(300);
-
-/// The checkpoint of a picture.
-pub(crate) struct Kept {
-    /// Where it is to be; nowhere if the picture keeps none.
-    pub(crate) path: Option<PathBuf>,
-    /// Once there is one.
-    pub(crate) checkpoint: Option<Checkpoint>,
-}
 
 /// How far a render is, for whoever shows it.
 #[derive(Debug, Default)]
@@ -79,7 +70,7 @@ pub(crate) struct Watcher<'a> {
 
 impl Watcher<'_> {
     /// Watches until the render ends.
-    pub(crate) fn watch(&self, kept: &mut Kept, mut terminal: Option<&mut Terminal>) {
+    pub(crate) fn watch(&self, mut terminal: Option<&mut Terminal>) {
         let (mut saved, mut drawn) = (Instant::now(), Instant::now());
         let (mut has_told, mut has_failed) = (false, false);
         while !self.course.wait(WATCH) {
@@ -93,10 +84,8 @@ impl Watcher<'_> {
                 has_told = true;
                 (self.note)(self.stopping);
             }
-            if let Kept { path: Some(path), checkpoint } = kept
-                && saved.elapsed() >= self.interval
-            {
-                let done = self.job.save(checkpoint, path);
+            if saved.elapsed() >= self.interval {
+                let done = self.job.save();
                 saved = Instant::now();
                 if let Err(error) = &done
                     && !has_failed

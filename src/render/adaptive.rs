@@ -8,13 +8,14 @@ use std::sync::{
 };
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use super::{
     Outcome, Picture,
     crew::{Crew, Sampler, in_turn, lock, trace_centers},
     goal::Demand,
-    look::{Window, corrected, skips_cells},
-    outlook::{Outlook, outlooks, tile_of},
+    known::Known,
+    outlook::{Outlook, tile_of},
     plane::{Area, Plane},
     round::{
         Pixel, Round, Threshold, add_rays, is_above, is_disputed, is_picked, next_rays, wants_next,
@@ -28,11 +29,8 @@ use crate::{
     color::Rgb,
 };
 
-/// The samples that a pixel gets at least where a pattern's cells are no wider than it: its centre and corners, and those of its
-/// neighbours, may all have met the same colour.
-const LEAST_IN_CELLS: u32 = 8;
-
 /// A picture that gets better with every call of [`Adaptive::refine`].
+#[derive(Serialize, Deserialize)]
 pub(super) struct Adaptive {
     area: Area,
     /// Pixels in a row of the whole picture.
@@ -42,91 +40,45 @@ pub(super) struct Adaptive {
     centers: Plane<Sample>,
     /// Corners of pixels; those not traced have no rays.
     corners: Plane<Sample>,
+    /// Whether all centres are traced.
+    has_begun: bool,
     known: Known,
     /// Rays of all kinds so far.
     spent: AtomicU64,
 }
 
-/// What is known of the pixels of the area.
-struct Known {
-    pixels: Plane<Pixel>,
-    colors: Plane<Rgb>,
-    samples: Plane<u32>,
-    /// By tile.
-    outlooks: Plane<Outlook>,
-}
-
 impl Adaptive {
-    /// Traces the centres of `area`, and of the pixels around it, so that a part of a picture is that of the whole.
-    ///
-    /// When `stop` says so, the pixels that are left have no samples, and nothing is to be refined.
-    pub(super) fn new<S: Sampler + Send>(
-        crew: &Crew<S>,
-        area: &Area,
-        width: u32,
-        most: u32,
-        stop: impl Fn() -> bool + Sync,
-    ) -> Self {
-        let centers = trace_centers(crew, &area.grown(1), stop);
-        let spent = centers.values().iter().map(|sample| u64::from(sample.rays)).sum();
-        let stages = stages(most);
-        let samples = area.pixels().map(|(x, y)| u32::from(centers.at(x, y).rays > 0)).collect();
-        let known = Mutex::new(Known {
-            pixels: Plane::new(*area, Pixel::default()),
-            colors: Plane::new(*area, Rgb::ZERO),
-            samples: Plane::of(*area, samples),
-            outlooks: outlooks(area),
-        });
-        let has_thin = (crew.new_sampler)().has_thin();
-        crew.run(
-            area,
-            false,
-            || false,
-            |sampler, _, tile| {
-                let window = Window::of_centers(tile, &centers);
-                let (own_pixels, own_colors): (Vec<_>, Vec<_>) = tile
-                    .pixels()
-                    .zip(window.looks())
-                    .map(|((x, y), look)| {
-                        let color = if look.inner {
-                            corrected(&centers, x, y)
-                        } else {
-                            centers.at(x, y).color
-                        };
-                        let thin =
-                            if has_thin { sampler.least_samples(x as u32, y as u32) } else { 0 };
-                        let skips = look.suspect && skips_cells(&centers, x, y);
-                        let cells = if skips { LEAST_IN_CELLS } else { 0 };
-                        let error = look.center_error(look.inner);
-                        let pixel = Pixel {
-                            suspect: look.suspect,
-                            error,
-                            expected: error,
-                            least: thin.max(cells),
-                            contrast: look.contrast,
-                            busy: look.busy,
-                            ..Pixel::default()
-                        };
-                        (pixel, color)
-                    })
-                    .unzip();
-                let outlook = Outlook::of(tile, &own_pixels, &stages, &centers);
-                let mut known = lock(&known);
-                known.pixels.put(tile, own_pixels);
-                known.colors.put(tile, own_colors);
-                let (column, row) = tile_of(area, tile.x0, tile.y0);
-                *known.outlooks.at_mut(column, row) = outlook;
-            },
-        );
+    /// A picture of `area` of which nothing is known.
+    pub(super) fn new(area: &Area, width: u32, most: u32) -> Self {
         Self {
             area: *area,
             width,
-            stages,
-            centers,
+            stages: stages(most),
+            centers: Plane::new(area.grown(1), Sample::default()),
             corners: Plane::new(area.corners(), Sample::default()),
-            known: known.into_inner().unwrap_or_else(PoisonError::into_inner),
-            spent: AtomicU64::new(spent),
+            has_begun: false,
+            known: Known::new(area),
+            spent: AtomicU64::new(0),
         }
+    }
+
+    /// Traces the centres of the area, and of the pixels around it, so that a part of a picture is that of the whole; returns
+    /// whether all are.
+    ///
+    /// When `stop` says so, the pixels that are left have no samples, and nothing is to be refined.
+    pub(super) fn begin<S: Sampler + Send>(
+        &mut self,
+        crew: &Crew<S>,
+        stop: impl Fn() -> bool + Sync,
+    ) -> bool {
+        if !self.has_begun {
+            trace_centers(crew, &mut self.centers, &stop);
+            self.has_begun = !stop();
+            let rays = self.centers.values().iter().map(|sample| u64::from(sample.rays));
+            self.spent = AtomicU64::new(rays.sum());
+            self.known.look(crew, &self.stages, &self.centers);
+        }
+        self.has_begun
     }
 
     /// Gives every pixel above the threshold its next samples, until none is or all have the most they may get.
@@ -262,6 +214,16 @@ impl Adaptive {
             return Vec::new();
         }
         in_turn(tile).filter(|&(x, y)| is_wanted[tile.place_of(x, y)]).collect()
+    }
+
+    /// Whether it is a picture of `area`.
+    pub(super) fn is_of(&self, area: &Area) -> bool {
+        self.area == *area
+    }
+
+    /// Whether all centres are traced.
+    pub(super) fn has_begun(&self) -> bool {
+        self.has_begun
     }
 
     /// The estimated error: root mean square of all channels, in levels of 255.

@@ -4,7 +4,7 @@ use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
 
-use super::{Goal, Outcome, Progress, RayCounts};
+use super::{Goal, Outcome, Progress, RayCounts, Unfinished};
 use crate::{
     aa::AntiAliasing,
     color::Rgb,
@@ -75,6 +75,19 @@ pub trait Sink: Sync {
     /// Takes a look at a picture towards an error or until a time, whose every pixel has a ray already: its place, colours and the rays
     /// through each pixel.
     fn show(&self, _place: &Tile, _colors: &[Rgb], _samples: &[u32]) {}
+
+    /// Whether a picture towards an error or until a time is to be kept as it is now. Once it is asked for, until then.
+    fn wants_unfinished(&self) -> bool {
+        false
+    }
+
+    /// Keeps a picture towards an error or until a time, which may go on from it: because that is wanted, or because it is stopped.
+    fn keep(&self, _unfinished: &Unfinished) {}
+
+    /// Gives back what was kept of such a picture, to go on from.
+    fn unfinished(&self) -> Option<Unfinished> {
+        None
+    }
 
     /// Whether no further block is to be begun. Blocks at which work goes on are finished; a picture towards an error or until
     /// a time, which is one block, ends as it is.

@@ -136,14 +136,18 @@ pub(super) fn center(x: i64, y: i64) -> DVec2 {
     DVec2::new(x as f64 + 0.5, y as f64 + 0.5)
 }
 
-/// Traces the centre of every pixel of the plane; where `stop` says so, samples without rays are left.
+/// Traces the centre of every pixel of the plane that has no rays yet; where `stop` says so, they are left.
 pub(super) fn trace_centers<S: Sampler + Send>(
     crew: &Crew<S>,
-    area: &Area,
+    centers: &mut Plane<Sample>,
     stop: impl Fn() -> bool + Sync,
-) -> Plane<Sample> {
-    let centers = Mutex::new(Plane::new(*area, Sample::default()));
-    crew.run(area, true, stop, |sampler, scratch, tile| {
+) {
+    let area = *centers.area();
+    let centers = Mutex::new(centers);
+    crew.run(&area, true, stop, |sampler, scratch, tile| {
+        if lock(&centers).is_traced(tile) {
+            return;
+        }
         scratch.places.clear();
         scratch.samples.clear();
         scratch.places.extend(in_turn(tile).map(|(x, y)| center(x, y)));
@@ -153,5 +157,4 @@ pub(super) fn trace_centers<S: Sampler + Send>(
             *centers.at_mut(x, y) = *sample;
         }
     });
-    centers.into_inner().unwrap_or_else(PoisonError::into_inner)
 }

@@ -2,11 +2,15 @@
 
 use std::time::{Duration, Instant};
 
+use serde::{Deserialize, Serialize};
+
 use super::{
-    Outcome, Watch,
+    Outcome, RayCounts,
     adaptive::Adaptive,
     crew::{Crew, Sampler},
+    plane::Area,
     round::Threshold,
+    watch::Watch,
 };
 
 /// The ladder of thresholds, in squared levels for each ray: its first step, and steps to halve it.
@@ -32,81 +36,161 @@ fn at_step(step: u32) -> f32 {
     (FIRST_STEP * (-f64::from(step) / STEPS_TO_HALF).exp2()) as f32
 }
 
-/// Refines where the squared error for each ray is largest, until the estimate is `wanted` levels or less, or `watch` stops it.
-///
-/// The threshold goes down a fixed ladder, and the picture is that of the threshold at which it ends: what is spent on the way is
-/// part of it.
-pub(super) fn reach_error<S: Sampler + Send>(
-    adaptive: &mut Adaptive,
-    crew: &Crew<S>,
-    wanted: f64,
-    watch: &Watch,
-) -> Outcome {
-    let mut step = 0;
-    let mut per_ray = None;
-    loop {
-        let error = adaptive.estimated_rmse();
-        if error <= wanted {
-            return Outcome { per_ray, ..Outcome::default() };
-        }
-        if (watch.stop)() {
-            return Outcome { cut: true, missed_error: Some(wanted), ..Outcome::default() };
-        }
-        if step > LAST_STEP || !adaptive.can_improve() {
-            return Outcome { per_ray, missed_error: Some(wanted), ..Outcome::default() };
-        }
-        watch.show(adaptive);
-        crew.meter.reach((wanted / error).powf(RAYS_POWER));
-        let threshold = at_step(step);
-        adaptive.refine(crew, Threshold::PerRay(threshold), false, watch.stop);
-        per_ray = Some(threshold);
-        let steps = STEPS_TO_HALF * (adaptive.estimated_rmse() / wanted).log2() / ERROR_POWER;
-        step += if steps.is_finite() { (steps * JUMP).max(1.0) as u32 } else { LAST_STEP / 4 };
-    }
+/// How a picture ends that is stopped.
+fn stopped() -> Outcome {
+    Outcome { is_stopped: true, ..Outcome::default() }
 }
 
-/// Refines where the squared error for each ray is largest, until `end`, or until `watch` stops it.
+/// A picture towards an error or until a time before it gets there: all that is needed to go on from it.
 ///
-/// Each step takes a part of the time left, as predicted from the rays before; the pixels of the last one are taken by chance,
-/// so that no part of the picture is left out.
-pub(super) fn reach_time<S: Sampler + Send>(
-    adaptive: &mut Adaptive,
-    crew: &Crew<S>,
-    (started, end): (Instant, Instant),
-    watch: &Watch,
-) -> Outcome {
-    let whole = end.saturating_duration_since(started).as_secs_f64().max(1e-9);
-    let stop = || Instant::now() >= end || (watch.stop)();
-    if Instant::now() >= end {
-        return Outcome { late: Some(started.elapsed()), ..Outcome::default() };
-    }
-    let mut seconds_per_ray = started.elapsed().as_secs_f64() / adaptive.spent().max(1) as f64;
-    let mut round = 0;
-    loop {
-        let left = end.saturating_duration_since(Instant::now());
-        if left < SHORTEST || (watch.stop)() {
-            break;
+/// It goes on to the same picture, wherever it was left, if the goal is an error.
+#[derive(Serialize, Deserialize)]
+pub struct Unfinished {
+    /// The rays cast for it.
+    pub(super) rays: RayCounts,
+    pub(super) adaptive: Adaptive,
+    /// Towards an error: the step of the ladder in work, or to be taken next.
+    step: u32,
+    is_in_step: bool,
+    /// The threshold of the last step that was finished.
+    per_ray: Option<f32>,
+    /// Until a time: the steps so far, and what a ray took in the last one.
+    round: u32,
+    seconds_per_ray: f64,
+}
+
+impl Unfinished {
+    /// A picture of `area` of which nothing is known.
+    pub(super) fn new(area: &Area, width: u32, most: u32) -> Self {
+        Self {
+            rays: RayCounts::default(),
+            adaptive: Adaptive::new(area, width, most),
+            step: 0,
+            is_in_step: false,
+            per_ray: None,
+            round: 0,
+            seconds_per_ray: 0.0,
         }
-        watch.show(adaptive);
-        crew.meter.reach(1.0 - left.as_secs_f64() / whole);
-        let demand = adaptive.demand();
-        let affordable = left.as_secs_f64() / seconds_per_ray;
-        let Some(level) = demand.level_for(affordable * SHARE_OF_TIME) else {
-            break; // nothing left to refine
-        };
-        let share = (affordable * 0.9 / demand.at_level(level).max(1) as f64).min(1.0);
-        let (before, stepping) = (adaptive.spent(), Instant::now());
-        let threshold = Threshold::PerRayOfSome(Demand::threshold(level), share as f32, round);
-        round += 1;
-        adaptive.refine(crew, threshold, false, stop);
-        let rays = adaptive.spent() - before;
+    }
+
+    /// Its estimated error, root mean square of all channels in levels of 255, once each pixel has a ray.
+    pub fn estimated_rmse(&self) -> Option<f64> {
+        self.adaptive.has_begun().then(|| self.adaptive.estimated_rmse())
+    }
+
+    /// Refines where the squared error for each ray is largest, until the estimate is `wanted` levels or less, or `watch` stops it.
+    ///
+    /// The threshold goes down a fixed ladder, and the picture is that of the threshold at which it ends: what is spent on the way
+    /// is part of it.
+    pub(super) fn reach_error<S: Sampler + Send>(
+        mut self,
+        crew: &Crew<S>,
+        wanted: f64,
+        watch: &Watch,
+    ) -> (Adaptive, Outcome) {
+        loop {
+            if watch.keeps(&mut self) {
+                return (self.adaptive, stopped());
+            }
+            if self.adaptive.begin(crew, || watch.interrupts()) {
+                if let Some(outcome) = self.ending(wanted) {
+                    return (self.adaptive, outcome);
+                }
+                watch.show(&self.adaptive);
+                crew.meter.reach((wanted / self.adaptive.estimated_rmse()).powf(RAYS_POWER));
+                self.step_down(crew, wanted, watch);
+            }
+        }
+    }
+
+    /// Takes the step of the ladder, or the rest of it, as far as `watch` lets it.
+    fn step_down<S: Sampler + Send>(&mut self, crew: &Crew<S>, wanted: f64, watch: &Watch) {
+        let threshold = at_step(self.step);
+        self.is_in_step = true;
+        self.adaptive.refine(crew, Threshold::PerRay(threshold), false, || watch.interrupts());
+        if watch.interrupts() {
+            return;
+        }
+        self.is_in_step = false;
+        self.per_ray = Some(threshold);
+        let steps = STEPS_TO_HALF * (self.adaptive.estimated_rmse() / wanted).log2() / ERROR_POWER;
+        self.step += if steps.is_finite() { (steps * JUMP).max(1.0) as u32 } else { LAST_STEP / 4 };
+    }
+
+    /// How the picture ends if it has reached the error, or gets no nearer to it.
+    fn ending(&self, wanted: f64) -> Option<Outcome> {
+        let outcome = Outcome { per_ray: self.per_ray, ..Outcome::default() };
+        if self.is_in_step {
+            return None;
+        }
+        if self.adaptive.estimated_rmse() <= wanted {
+            return Some(outcome);
+        }
+        let is_over = self.step > LAST_STEP || !self.adaptive.can_improve();
+        is_over.then_some(Outcome { missed_error: Some(wanted), ..outcome })
+    }
+
+    /// Refines where the squared error for each ray is largest, until `end`, or until `watch` stops it.
+    ///
+    /// Each step takes a part of the time left, as predicted from the rays before; the pixels of the last one are taken by chance,
+    /// so that no part of the picture is left out.
+    pub(super) fn reach_time<S: Sampler + Send>(
+        mut self,
+        crew: &Crew<S>,
+        (started, end): (Instant, Instant),
+        watch: &Watch,
+    ) -> (Adaptive, Outcome) {
+        let before = self.adaptive.spent();
+        while !self.adaptive.begin(crew, || watch.interrupts()) {
+            if watch.keeps(&mut self) {
+                return (self.adaptive, stopped());
+            }
+        }
+        let (now, rays) = (Instant::now(), self.adaptive.spent() - before);
+        if now >= end {
+            let late = Some(started.elapsed());
+            return (self.adaptive, Outcome { late, ..Outcome::default() });
+        }
         if rays > 0 {
-            seconds_per_ray = stepping.elapsed().as_secs_f64() / rays as f64;
-        } else if share >= 1.0 {
-            break;
+            self.seconds_per_ray = (now - started).as_secs_f64() / rays as f64;
+        }
+        let whole = end.saturating_duration_since(started).as_secs_f64().max(1e-9);
+        loop {
+            if watch.keeps(&mut self) {
+                return (self.adaptive, stopped());
+            }
+            let left = end.saturating_duration_since(Instant::now());
+            watch.show(&self.adaptive);
+            crew.meter.reach(1.0 - left.as_secs_f64() / whole);
+            if left < SHORTEST || !self.step_within(crew, left, end, watch) {
+                return (self.adaptive, Outcome { cut: true, ..Outcome::default() });
+            }
         }
     }
-    Outcome { cut: true, ..Outcome::default() }
+
+    /// Takes a step that should take a part of the time `left` until `end`; returns whether there was anything to refine.
+    fn step_within<S: Sampler + Send>(
+        &mut self,
+        crew: &Crew<S>,
+        left: Duration,
+        end: Instant,
+        watch: &Watch,
+    ) -> bool {
+        let demand = self.adaptive.demand();
+        let affordable = left.as_secs_f64() / self.seconds_per_ray;
+        let Some(level) = demand.level_for(affordable * SHARE_OF_TIME) else { return false };
+        let share = (affordable * 0.9 / demand.at_level(level).max(1) as f64).min(1.0);
+        let (before, stepping) = (self.adaptive.spent(), Instant::now());
+        let threshold = Threshold::PerRayOfSome(Demand::threshold(level), share as f32, self.round);
+        self.round += 1;
+        let stop = || Instant::now() >= end || watch.interrupts();
+        self.adaptive.refine(crew, threshold, false, stop);
+        let rays = self.adaptive.spent() - before;
+        if rays > 0 {
+            self.seconds_per_ray = stepping.elapsed().as_secs_f64() / rays as f64;
+        }
+        rays > 0 || share < 1.0 || watch.interrupts()
+    }
 }
 
 /// How many rays the next stages of the pixels take, by the squared error for each ray that they are worth.

@@ -4,6 +4,7 @@ mod adaptive;
 mod blocks;
 mod crew;
 mod goal;
+mod known;
 mod look;
 mod outlook;
 mod plain;
@@ -11,6 +12,7 @@ mod plane;
 pub mod refine;
 mod round;
 mod thin;
+mod watch;
 mod whole;
 mod worker;
 
@@ -24,6 +26,7 @@ use thiserror::Error;
 
 pub use blocks::{Account, Block, Sink, blocks};
 pub use crew::Sampler;
+pub use goal::Unfinished;
 
 pub use crate::trace::RayCounts;
 use crate::{
@@ -38,6 +41,7 @@ use adaptive::Adaptive;
 use crew::{Crew, Meter};
 use plane::Area;
 use round::Threshold;
+use watch::Watch;
 use worker::Worker;
 
 /// What the user may choose; the rest is the scene's.
@@ -87,6 +91,8 @@ pub struct Outcome {
     pub late: Option<Duration>,
     /// Whether the clock decided what was refined.
     pub cut: bool,
+    /// Whether it was stopped before its goal, and only kept to go on from.
+    pub is_stopped: bool,
 }
 
 /// How far a render is.
@@ -191,23 +197,15 @@ pub fn picture<S: Sampler + Send>(
     new_sampler: &(dyn Fn() -> S + Sync),
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Picture {
-    let watch = Watch { stop: &|| false, show: &|_, _| () };
+    let watch = Watch { sink: &Nobody, place: part, rays: &Mutex::default() };
     picture_watched(part, width, (aa, goal), new_sampler, progress, &watch)
 }
 
-/// Who looks after a picture towards an error or until a time.
-struct Watch<'a> {
-    /// Whether it is to end as it is.
-    stop: &'a (dyn Fn() -> bool + Sync),
-    /// Takes the colours and the rays of the pixels so far.
-    show: &'a dyn Fn(&[Rgb], &[u32]),
-}
+/// Takes no notice of what a picture is on its way.
+struct Nobody;
 
-impl Watch<'_> {
-    fn show(&self, adaptive: &Adaptive) {
-        let (colors, samples) = adaptive.shown();
-        (self.show)(colors, samples);
-    }
+impl Sink for Nobody {
+    fn put(&self, _: Block) {}
 }
 
 /// The same, looked after.
@@ -228,17 +226,18 @@ fn picture_watched<S: Sampler + Send>(
         AntiAliasing::Grid { side } => plain::grid(&crew, &area, side),
         AntiAliasing::Sequence { count } => plain::sequence(&crew, &area, width, count),
         AntiAliasing::Adaptive { error, most } => {
-            let stop = || goal != Goal::Mode && (watch.stop)();
-            let mut adaptive = Adaptive::new(&crew, &area, width, most, stop);
-            let outcome = match goal {
+            let begun = || watch.kept().unwrap_or_else(|| Unfinished::new(&area, width, most));
+            let (adaptive, outcome) = match goal {
                 Goal::Mode => {
+                    let mut adaptive = Adaptive::new(&area, width, most);
+                    adaptive.begin(&crew, || false);
                     meter.reach(0.5);
                     adaptive.refine(&crew, Threshold::Error(error * error), true, || false);
                     let unsettled = adaptive.unsettled(error * error);
-                    Outcome { unsettled, ..Outcome::default() }
+                    (adaptive, Outcome { unsettled, ..Outcome::default() })
                 }
-                Goal::Error(wanted) => goal::reach_error(&mut adaptive, &crew, wanted, watch),
-                Goal::Until(end) => goal::reach_time(&mut adaptive, &crew, (started, end), watch),
+                Goal::Error(wanted) => begun().reach_error(&crew, wanted, watch),
+                Goal::Until(end) => begun().reach_time(&crew, (started, end), watch),
             };
             meter.reach(1.0);
             Picture { outcome, ..adaptive.into_picture() }
@@ -332,8 +331,7 @@ pub fn render_blocks(
             thin: thin.as_ref(),
             counts: &rays,
         };
-        let show = |colors: &[Rgb], samples: &[u32]| sink.show(place, colors, samples);
-        let watch = Watch { stop: &|| sink.is_stopped(), show: &show };
+        let watch = Watch { sink, place, rays: &rays };
         let picture = picture_watched(place, width, mode, &new_sampler, progress, &watch);
         let rays = rays.into_inner().unwrap_or_else(PoisonError::into_inner);
         picture.into_block(number, *place, rays)

@@ -1,5 +1,7 @@
 //! What rays may still gain in each tile, so that a pass over the picture goes only where it changes something.
 
+use serde::{Deserialize, Serialize};
+
 use super::{
     plane::{Area, Plane, TILE_SIDE},
     round::{Pixel, Threshold, next_rays},
@@ -7,7 +9,7 @@ use super::{
 use crate::aa::{Sample, refined::Stage};
 
 /// What is known of the pixels of a tile.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Outlook {
     /// The largest squared error of a pixel that may get more rays; infinite if one is to get them whatever its error.
     error: f32,

@@ -12,6 +12,7 @@ use super::{
 };
 use crate::{
     aa::{
+        Sample,
         estimate::{
             GRID_OF_FOUR, Spread, bare_sequence_share, grid_unseen, interleaved, interleaved_share,
             sequence_unseen,
@@ -28,7 +29,8 @@ const BATCH: usize = 64;
 
 /// One ray through each centre.
 pub(super) fn centers<S: Sampler + Send>(crew: &Crew<S>, area: &Area) -> Picture {
-    let centers = trace_centers(crew, area, || false);
+    let mut centers = Plane::new(*area, Sample::default());
+    trace_centers(crew, &mut centers, || false);
     let errors = Mutex::new(Plane::new(*area, 0.0));
     each_tile(area, |tile| {
         let window = Window::of_centers(tile, &centers);

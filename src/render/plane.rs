@@ -1,12 +1,17 @@
 //! Rectangles of pixels, which may reach over the picture's edge, and what is known of each pixel in one.
 
-use crate::film::{Tile, tiles};
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    aa::Sample,
+    film::{Tile, tiles},
+};
 
 /// The side of a tile in pixels: small enough to share the work out evenly, large enough to cost nothing by itself.
 pub(super) const TILE_SIDE: u32 = 16;
 
 /// A rectangle of pixels, half open, in columns and rows of the whole picture; those of its apron have -1 and width or height.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Area {
     pub(super) x0: i64,
     pub(super) y0: i64,
@@ -79,7 +84,7 @@ impl Area {
 }
 
 /// A value for each pixel of an area, row by row.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Plane<T> {
     area: Area,
     values: Vec<T>,
@@ -92,12 +97,6 @@ impl<T: Clone> Plane<T> {
 }
 
 impl<T> Plane<T> {
-    /// The values of the area's pixels, row by row.
-    pub(super) fn of(area: Area, values: Vec<T>) -> Self {
-        debug_assert_eq!(values.len(), area.len());
-        Self { area, values }
-    }
-
     pub(super) fn area(&self) -> &Area {
         &self.area
     }
@@ -150,6 +149,13 @@ impl<T> Plane<T> {
                 *place = value;
             }
         }
+    }
+}
+
+impl Plane<Sample> {
+    /// Whether all samples of a tile have their rays.
+    pub(super) fn is_traced(&self, tile: &Area) -> bool {
+        tile.pixels().all(|(x, y)| self.at(x, y).rays > 0)
     }
 }
 

@@ -3,6 +3,7 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::DVec2;
+use serde::{Deserialize, Serialize};
 
 use super::{
     crew::{Sampler, Scratch},
@@ -36,7 +37,7 @@ pub(super) enum Threshold {
 }
 
 /// What is known of a pixel.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Pixel {
     /// 0 is the centre alone, 1 centre and corners, from 2 on with samples.
     pub(super) stage: u8,

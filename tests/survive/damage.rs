@@ -1,6 +1,7 @@
 //! Checkpoints that are damaged, of other pictures, or missing.
 
 use std::fs;
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use whitted::checkpoint::{Checkpoint, CheckpointError, Job};
@@ -17,7 +18,7 @@ fn options() -> RenderOptions {
     RenderOptions { size: Some([200, 150]), aa, ..RenderOptions::default() }
 }
 
-fn label(scene: &Scene, text: &str) -> Label {
+pub(crate) fn label(scene: &Scene, text: &str) -> Label {
     Label {
         software: Label::this_software(),
         scene: scene.hash(),
@@ -29,18 +30,19 @@ fn label(scene: &Scene, text: &str) -> Label {
     }
 }
 
-fn quiet(_: Progress) {}
+pub(crate) fn quiet(_: Progress) {}
 
-/// A job that stops after `most` blocks' worth of reports.
 fn job<'a>(
     scene: &Scene,
+    path: &Path,
     stop: &'a AtomicBool,
     progress: &'a (dyn Fn(Progress) + Sync),
 ) -> Job<'a> {
     let places =
         blocks(&part(scene, &options()).expect("in the picture"), options().aa, Goal::Mode);
     assert!(places.len() >= 12);
-    Job::new(label(scene, "aa=adaptive:2,4096"), places, stop, progress)
+    let label = label(scene, "aa=adaptive:2,4096");
+    Job::new(label, places, Some(path.to_owned()), stop, progress)
 }
 
 fn finished(job: Job, effort: &Effort) -> (Film, Rendering) {
@@ -57,7 +59,7 @@ fn a_damaged_checkpoint_costs_time_but_never_a_pixel() {
     let path = folder.path().join("a.checkpoint");
     let scene = load_builtin("assignment").expect("built in");
     let never = AtomicBool::new(false);
-    let whole = job(&scene, &never, &quiet);
+    let whole = job(&scene, &path, &never, &quiet);
     let effort = render_blocks(&scene, &options(), &whole).expect("rendered");
     let (film, rendering) = finished(whole, &effort);
 
@@ -67,10 +69,10 @@ fn a_damaged_checkpoint_costs_time_but_never_a_pixel() {
         reports.fetch_add(1, Ordering::Relaxed);
         stop.fetch_or(progress.done * 2 > progress.total, Ordering::Relaxed);
     };
-    let half = job(&scene, &stop, &halfway);
+    let half = job(&scene, &path, &stop, &halfway);
     render_blocks(&scene, &options(), &half).expect("rendered");
     assert!(!half.is_complete() && half.share_done() > 0.2 && reports.load(Ordering::Relaxed) > 10);
-    half.save(&mut None, &path).expect("written");
+    half.save().expect("written");
     let bytes = fs::read(&path).expect("there");
 
     let mut random = 12345_u64;
@@ -89,26 +91,23 @@ fn a_damaged_checkpoint_costs_time_but_never_a_pixel() {
             damaged[place] ^= 1 << next(8);
         }
         fs::write(&path, damaged).expect("written");
-        let resumed = job(&scene, &never, &quiet);
-        let opened = resumed.resume(&path);
-        let mut checkpoint = match opened {
-            Err(CheckpointError::Damaged { .. }) => {
-                refused += 1;
-                continue;
-            }
-            opened => Some(opened.expect("refused or opened")),
-        };
+        let resumed = job(&scene, &path, &never, &quiet);
+        if let Err(error) = resumed.resume() {
+            assert!(matches!(error, CheckpointError::Damaged { .. }), "{error}");
+            refused += 1;
+            continue;
+        }
         kept += usize::from(resumed.share_done() > 0.0);
         if round % 8 == 1 {
             let effort = render_blocks(&scene, &options(), &resumed).expect("rendered");
-            resumed.save(&mut checkpoint, &path).expect("written");
+            resumed.save().expect("written");
             let (again, rendering_again) = finished(resumed, &effort);
             assert!(again == film, "round {round}, byte {place}");
             assert_eq!(rendering_again.rays, rendering.rays, "round {round}");
             assert_eq!(rendering_again.estimated_rmse, rendering.estimated_rmse);
             // The damage is gone, and all the blocks are there.
-            let last = job(&scene, &never, &quiet);
-            last.resume(&path).expect("sound again");
+            let last = job(&scene, &path, &never, &quiet);
+            last.resume().expect("sound again");
             assert!(last.is_complete());
         }
     }

@@ -3,6 +3,7 @@
 
 mod damage;
 mod files;
+mod goals;
 mod parts;
 #[path = "../program/mod.rs"]
 mod program;

@@ -180,7 +180,6 @@ fn tiles_are_refused_where_pixels_depend_on_each_other_or_on_nothing() {
         (&["--tile", "1/64", "--size", "6x5"], &["--tile", "6x5", "64"]),
         (&["--tile", "1/4", "--max-error", "2"], &["--tile", "--max-error"]),
         (&["--tile", "1/4", "--time-limit", "2"], &["--tile", "--time-limit"]),
-        (&["--resume", "--time-limit", "2"], &["--resume", "--time-limit"]),
         (&["--tile", "1/4", "--crop", "0,0,5,5"], &["--tile", "--crop"]),
         (&["--tile", "1/4", "--rules", "classic"], &["--rules classic", "--tile"]),
         (&["--tile", "1/4,2/4", "-o", "-"], &["several tiles"]),

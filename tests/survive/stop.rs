@@ -10,14 +10,13 @@ use super::{done, folder, json, names_in, read, refused, run, said, whitted};
 
 /// A picture of many small blocks that takes a moment.
 const PICTURE: [&str; 5] = ["render", "--size", "400x300", "--aa", "adaptive:1.5,4096"];
+/// One that goes to and fro over all of it.
+const TOWARDS_ERROR: [&str; 5] = ["render", "--size", "400x300", "--max-error", "0.4"];
 
 /// The undivided picture, for comparing.
-fn reference(at: &Path, kind: &str) -> Vec<u8> {
+fn reference(at: &Path, picture: &[&str], kind: &str) -> Vec<u8> {
     let name = format!("reference.{kind}");
-    done(&run(
-        at,
-        &[&PICTURE[..], &["-o", &name, "--quiet", "--stats", "reference.json"]].concat(),
-    ));
+    done(&run(at, &[picture, &["-o", &name, "--quiet", "--stats", "reference.json"]].concat()));
     let bytes = read(at, &name);
     fs::remove_file(at.join(name)).expect("there");
     bytes
@@ -67,7 +66,7 @@ fn a_signal_leaves_a_picture_and_a_checkpoint_from_which_it_goes_on() {
     for (name, code, kind) in [("-INT", 130, "png"), ("-TERM", 143, "exr")] {
         let folder = folder();
         let at = folder.path();
-        let expected = reference(at, kind);
+        let expected = reference(at, &PICTURE, kind);
         let file = format!("a b.{kind}");
         let child = until(at, 0.3, &["-o", &file]);
         signal(&child, name);
@@ -104,54 +103,73 @@ fn killed_at_any_moment_it_goes_on_to_the_same_picture() {
     let rounds = std::env::var("WHITTED_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(4);
     let folder = folder();
     let at = folder.path();
-    let expected = reference(at, "png");
-    let took = {
-        let started = Instant::now();
-        done(&run(at, &[&PICTURE[..], &["-o", "t.png", "--quiet"]].concat()));
-        started.elapsed()
-    };
     let mut random = 7_u64;
     let mut uniform = || {
         random =
             random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (random >> 40) as f64 / f64::from(1 << 24)
     };
-    let names = ["-KILL", "-INT", "-TERM", "-KILL"];
-    let (mut hits, mut resumed, mut kills) = (0, 0, 0);
-    for round in 0..rounds {
-        for left in ["a.png", "a.png.checkpoint", "a.png.checkpoint.old"] {
-            let _ = fs::remove_file(at.join(left));
+    let mut tally = Tally::default();
+    for picture in [&PICTURE, &TOWARDS_ERROR] {
+        let started = Instant::now();
+        let expected = reference(at, picture, "png");
+        let took = started.elapsed();
+        for round in 0..rounds / 2 {
+            for left in ["a.png", "a.png.checkpoint", "a.png.checkpoint.old"] {
+                let _ = fs::remove_file(at.join(left));
+            }
+            let mut moment = || took.mul_f64(0.7 * uniform());
+            tally.kill_until_done(at, picture, &mut moment);
+            assert!(read(at, "a.png") == expected, "{picture:?}, round {round}");
+            let left = names_in(at).into_iter().filter(|name| name.ends_with("checkpoint"));
+            assert_eq!(left.count(), 0, "{picture:?}, round {round}");
         }
+    }
+    let Tally { signals, hits, resumed } = tally;
+    let told = format!("{rounds} pictures: {signals} signals, {hits} hit, {resumed} resumed\n");
+    let _ = std::io::stderr().write_all(told.as_bytes());
+    assert!(hits > 0, "no signal came before the end");
+}
+
+/// What became of the signals.
+#[derive(Default)]
+struct Tally {
+    signals: usize,
+    /// Those that came before the end.
+    hits: usize,
+    /// Renders that went on from a checkpoint.
+    resumed: usize,
+}
+
+impl Tally {
+    /// Renders `a.png`, killed up to three times after as long as `moment` says, then left alone.
+    fn kill_until_done(
+        &mut self,
+        at: &Path,
+        picture: &[&str],
+        moment: &mut dyn FnMut() -> Duration,
+    ) {
         let file = ["-o", "a.png", "--checkpoint", "0.03", "--resume"];
-        let mut deaths = 0;
-        // Killed up to three times, then left alone.
-        loop {
-            let arguments = [&PICTURE[..], &file].concat();
-            let mut command = whitted(at, &arguments);
+        let names = ["-KILL", "-INT", "-TERM", "-KILL"];
+        for death in 0.. {
+            let mut command = whitted(at, &[picture, &file].concat());
             let child = command.stderr(Stdio::piped()).stdout(Stdio::null()).spawn().expect("runs");
-            if deaths < 3 {
-                std::thread::sleep(took.mul_f64(0.7 * uniform()));
-                let name = names[kills % names.len()];
-                signal(&child, name);
-                (deaths, kills) = (deaths + 1, kills + 1);
+            if death < 3 {
+                std::thread::sleep(moment());
+                signal(&child, names[self.signals % names.len()]);
+                self.signals += 1;
             }
             let output = end(child);
             let told = said(&output);
-            resumed += usize::from(told.contains("going on from"));
+            self.resumed += usize::from(told.contains("going on from"));
             assert_sound(at, "a.png");
             match output.status.code() {
-                Some(0) => break,
-                None | Some(130 | 143) => hits += 1,
-                Some(code) => panic!("round {round}: {code}: {told}"),
+                Some(0) => return,
+                None | Some(130 | 143) => self.hits += 1,
+                Some(code) => panic!("{code}: {told}"),
             }
         }
-        assert!(read(at, "a.png") == expected, "round {round}");
-        let left = names_in(at).into_iter().filter(|name| name.ends_with("checkpoint"));
-        assert_eq!(left.count(), 0, "round {round}");
     }
-    let tally = format!("{rounds} pictures: {kills} signals, {hits} hit, {resumed} resumed\n");
-    let _ = std::io::stderr().write_all(tally.as_bytes());
-    assert!(hits > 0, "no signal came before the end");
 }
 
 #[test]
@@ -209,7 +227,7 @@ fn a_signal_before_the_render_ends_the_program_with_its_code() {
     assert_eq!(names_in(folder.path()), [""; 0]);
 }
 
-/// What is written is better than one ray in each pixel, says that it is not what was asked for, and is the only file.
+/// What is written is better than one ray in each pixel, says that it is not what was asked for, and goes on.
 #[test]
 fn a_picture_towards_an_error_or_a_time_is_left_as_it_is() {
     let folder = folder();
@@ -227,28 +245,49 @@ fn a_picture_towards_an_error_or_a_time_is_left_as_it_is() {
     {
         let arguments = [&["render", "--size", "150x100", "-o", "a.png"][..], &goal].concat();
         let after = |seconds: u64| {
+            let _ = fs::remove_file(at.join("a.png.checkpoint"));
             let child = whitted(at, &arguments).stderr(Stdio::piped()).spawn().expect("it runs");
             std::thread::sleep(Duration::from_secs(seconds));
             signal(&child, "-INT");
             let output = end(child);
-            refused(&output, 130, &["before its goal", "so far: a.png", "no checkpoint"]);
-            output
+            refused(
+                &output,
+                130,
+                &["off by about", "so far: a.png", "a.png.checkpoint", "--resume"],
+            );
         };
         // Longer if the machine has other work.
-        let mut output = after(1);
+        after(1);
         for seconds in [4, 16] {
             if error("a.png") >= 0.5 * error("centers.png") {
-                output = after(seconds);
+                after(seconds);
             }
         }
-        assert!(said(&output).contains("off by about"), "{}", said(&output));
         let picture = image::open(at.join("a.png")).expect("a whole PNG");
         assert_eq!(picture.color(), image::ColorType::Rgb8, "{goal:?}: all of it is there");
         assert!(error("a.png") < 0.5 * error("centers.png"), "{}", error("a.png"));
         let label = String::from_utf8_lossy(&read(at, "a.png")).into_owned();
         assert!(label.contains(&format!("{option} interrupted=yes")), "{goal:?}");
-        assert_eq!(names_in(at), ["a.png", "centers.png", "truth.png"]);
+        let before = error("a.png");
+        assert_eq!(names_in(at), ["a.png", "a.png.checkpoint", "centers.png", "truth.png"]);
+        if goal[0] == "--time-limit" {
+            // The limit is part of what is asked for, and the checkpoint that of another picture without it.
+            refused(
+                &run(at, &[&small[..], &["-o", "a.png", "--resume"]].concat()),
+                5,
+                &["time-limit: not given here"],
+            );
+            let child = whitted(at, &[&arguments[..], &["--resume"]].concat())
+                .stderr(Stdio::piped())
+                .spawn()
+                .expect("it runs");
+            std::thread::sleep(Duration::from_secs(1));
+            signal(&child, "-INT");
+            refused(&end(child), 130, &["going on from a.png.checkpoint off by about"]);
+            assert!(error("a.png") < before, "{} after {before}", error("a.png"));
+        }
         fs::remove_file(at.join("a.png")).expect("deleted");
+        fs::remove_file(at.join("a.png.checkpoint")).expect("deleted");
     }
 }
 
@@ -264,11 +303,11 @@ fn a_picture_towards_a_goal_that_is_stopped_at_once_has_holes() {
     lines.read_line(&mut String::new()).expect("its first report");
     signal(&child, "-TERM");
     child.stderr = Some(lines.into_inner());
-    refused(&end(child), 143, &["% done", "picture so far: a.png", "no checkpoint"]);
+    refused(&end(child), 143, &["% done", "picture so far: a.png", "--resume"]);
     let picture = image::open(at.join("a.png")).expect("a whole PNG").into_rgba8();
     let clear = picture.pixels().filter(|pixel| pixel.0[3] == 0).count();
     assert!(clear > 0 && clear < 2500 * 2000, "{clear} transparent");
-    assert_eq!(names_in(at), ["a.png"]);
+    assert_eq!(names_in(at), ["a.png", "a.png.checkpoint"]);
 }
 
 /// Whether a temporary file is in the folder.
@@ -318,7 +357,7 @@ fn what_a_killed_program_left_is_deleted_by_the_next_one() {
 fn tiles_that_are_stopped_go_on_where_they_were() {
     let folder = folder();
     let at = folder.path();
-    let expected = reference(at, "png");
+    let expected = reference(at, &PICTURE, "png");
     let tiles = ["--tile", "1/3,2/3,3/3", "-o", "a.png"];
     // The second tile is in work when the first is finished.
     let mut child = until(at, 1.0, &tiles);
@@ -340,7 +379,7 @@ fn tiles_that_are_stopped_go_on_where_they_were() {
 fn a_full_disk_costs_neither_the_checkpoint_nor_the_old_picture() {
     let folder = folder();
     let at = folder.path();
-    let expected = reference(at, "exr");
+    let expected = reference(at, &PICTURE, "exr");
     fs::write(at.join("a.exr"), "old").expect("written");
     let program = env!("CARGO_BIN_EXE_whitted");
     // In units of 512 or 1024 bytes: room for part of the checkpoint, which takes 16 bytes a pixel, but not for the picture.
@@ -365,7 +404,7 @@ fn a_full_disk_costs_neither_the_checkpoint_nor_the_old_picture() {
 fn a_folder_deleted_on_the_way_is_made_again() {
     let folder = folder();
     let at = folder.path();
-    let expected = reference(at, "png");
+    let expected = reference(at, &PICTURE, "png");
     for stopped in [false, true] {
         fs::create_dir(at.join("sub")).expect("created");
         let child = until(at, 0.3, &["-o", "sub/a.png", "--checkpoint", "0.02"]);

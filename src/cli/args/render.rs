@@ -53,7 +53,7 @@ pub(crate) struct RenderArgs {
     pub(crate) max_error: Option<f64>,
 
     /// Seconds from the start of the program to the written picture; the best picture that they allow, whose error is
-    /// reported. It is not the same every time
+    /// reported. It is not the same every time. With --resume, so many seconds more
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, conflicts_with = "max_error",
         allow_negative_numbers = true, help_heading = "Quality")]
     pub(crate) time_limit: Option<f64>,
@@ -75,8 +75,8 @@ pub(crate) struct RenderArgs {
     pub(crate) resume: bool,
 
     /// Seconds between checkpoints, beside the output with .checkpoint behind its name; it is deleted when the picture is
-    /// finished. Pictures on standard output, and those with --max-error or --time-limit, have none; of the latter two Ctrl-C
-    /// writes what there is
+    /// finished. Pictures on standard output have none. With --max-error or --time-limit it is all of the picture each time, and
+    /// 50 times as long as that takes is between two at least
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, default_value = "30",
         allow_negative_numbers = true, help_heading = "Long renders")]
     pub(crate) checkpoint: f64,
