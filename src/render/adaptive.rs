@@ -17,9 +17,7 @@ use super::{
     known::Known,
     outlook::{Outlook, tile_of},
     plane::{Area, Plane},
-    round::{
-        Pixel, Round, Threshold, add_rays, is_above, is_disputed, is_picked, next_rays, wants_next,
-    },
+    round::{Pixel, Round, Threshold, add_rays, is_disputed, is_picked},
 };
 use crate::{
     aa::{
@@ -95,7 +93,6 @@ impl Adaptive {
         let (area, centers, spent) = (&self.area, &self.centers, &self.spent);
         let known = Mutex::new(&mut self.known);
         let round = Round {
-            area,
             width: self.width,
             stages: &self.stages,
             centers,
@@ -104,40 +101,23 @@ impl Adaptive {
             stop: &stop,
         };
         crew.run(area, counted, &stop, |sampler, scratch, tile| {
-            let (column, row) = tile_of(area, tile.x0, tile.y0);
-            let mut own = {
-                let mut known = lock(&known);
-                if !known.outlooks.at(column, row).may_exceed(threshold) {
-                    return;
-                }
-                known.pixels.take(tile)
-            };
-            let mut changed = vec![false; own.len()];
-            round.cross(tile, &mut own, &mut changed);
-            let places = in_turn(tile).map(|(x, y)| tile.place_of(x, y));
+            let mut chosen = lock(&known).choose(tile, threshold);
+            if chosen.is_empty() {
+                return;
+            }
+            round.cross(&mut chosen);
             let mut wanting: Vec<usize> =
-                places.filter(|&index| round.wants(tile, &own[index], index)).collect();
+                (0..chosen.len()).filter(|&place| round.wants(&chosen[place])).collect();
             while !wanting.is_empty() {
-                if !round.give(tile, &wanting, &mut own, &mut changed, (sampler, scratch), spent) {
+                if !round.give(&wanting, &mut chosen, (sampler, scratch), spent) {
                     break;
                 }
                 if matches!(threshold, Threshold::PerRayOfSome(..)) {
                     break; // how much was worth it is known for one stage
                 }
-                wanting.retain(|&index| round.wants(tile, &own[index], index));
+                wanting.retain(|&place| round.wants(&chosen[place]));
             }
-            let outlook = Outlook::of(tile, &own, round.stages, centers);
-            let mut known = lock(&known);
-            for (index, (x, y)) in tile.pixels().enumerate().filter(|(i, _)| changed[*i]) {
-                if let Some(refined) = &own[index].refined {
-                    *known.colors.at_mut(x, y) = refined.color();
-                    // Corners that only neighbours wanted do not count, or it would depend on whether those are rendered.
-                    let own = !own[index].suspect || is_disputed(centers, x, y);
-                    *known.samples.at_mut(x, y) = 1 + u32::from(own) + refined.points();
-                }
-            }
-            known.pixels.put(tile, own);
-            *known.outlooks.at_mut(column, row) = outlook;
+            lock(&known).put_back(tile, chosen, centers);
         });
     }
 
@@ -193,12 +173,9 @@ impl Adaptive {
             y1: tile.y1.min(area.y1),
         };
         let mut is_wanted = vec![false; tile.len()];
-        for (x, y) in around.pixels() {
+        for (x, y) in self.known.above(&around, threshold) {
             let pixel = self.known.pixels.at(x, y);
-            if pixel.stage > 0
-                || !wants_next(&self.stages, threshold, pixel, centers.at(x, y))
-                || !is_picked(threshold, x, y)
-            {
+            if pixel.stage > 0 || !is_picked(threshold, x, y) {
                 continue;
             }
             for (x, y) in [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)] {
@@ -250,8 +227,7 @@ impl Adaptive {
     /// How many pixels got all the rays they may get, and have a squared error of at least `limit`.
     pub(super) fn unsettled(&self, limit: f32) -> usize {
         let is_unsettled = |p: &&Pixel| {
-            usize::from(p.stage) >= self.stages.len()
-                && is_above(Threshold::Error(limit), p.error, 0.0)
+            usize::from(p.stage) >= self.stages.len() && p.error > 0.0 && p.error >= limit
         };
         self.known.pixels.values().iter().filter(is_unsettled).count()
     }
@@ -259,21 +235,16 @@ impl Adaptive {
     /// What the next stages of all pixels are worth, and take.
     pub(super) fn demand(&self) -> Demand {
         let mut demand = Demand::new();
-        for ((x, y), pixel) in self.area.pixels().zip(self.known.pixels.values()) {
-            if let Some(rays) = next_rays(&self.stages, pixel, self.centers.at(x, y)) {
-                let worth = if pixel.is_due() { f32::MAX } else { pixel.error / rays };
-                demand.add(worth, rays.ceil() as u64);
-            }
-        }
+        self.known.worths.values().iter().for_each(|worth| demand.add(worth));
         demand
     }
 
     pub(super) fn into_picture(self) -> Picture {
-        let Known { pixels, colors, samples, .. } = self.known;
+        let Known { worths, colors, samples, .. } = self.known;
         Picture {
             colors: colors.into_values(),
             samples: samples.into_values(),
-            errors: pixels.values().iter().map(|pixel| pixel.expected).collect(),
+            errors: worths.values().iter().map(|worth| worth.expected).collect(),
             outcome: Outcome::default(),
         }
     }

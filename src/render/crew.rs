@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::{
     Progress,
-    plane::{Area, Plane},
+    plane::{Area, Plane, TILE_SIDE},
 };
 use crate::aa::Sample;
 
@@ -114,16 +114,24 @@ pub(super) fn each_tile(area: &Area, work: impl Fn(&Area) + Sync) {
 /// The pixels of a tile in Morton order, so that any run of them is close together and their rays go the same way.
 pub(super) fn in_turn(tile: &Area) -> impl Iterator<Item = (i64, i64)> + use<> {
     let tile = *tile;
-    let side = tile.width().max(tile.height()).next_power_of_two() as u32;
-    (0..side * side)
-        .map(move |code| {
-            (tile.x0 + i64::from(even_bits(code)), tile.y0 + i64::from(even_bits(code >> 1)))
-        })
-        .filter(move |&(x, y)| tile.contains(x, y))
+    TURN.iter()
+        .map(move |&[x, y]| (tile.x0 + i64::from(x), tile.y0 + i64::from(y)))
+        .filter(move |&(x, y)| x < tile.x1 && y < tile.y1)
 }
 
+/// The columns and rows of a tile in Morton order.
+const TURN: [[u8; 2]; (TILE_SIDE * TILE_SIDE) as usize] = {
+    let mut turn = [[0; 2]; (TILE_SIDE * TILE_SIDE) as usize];
+    let mut code = 0;
+    while code < turn.len() {
+        turn[code] = [even_bits(code as u32) as u8, even_bits(code as u32 >> 1) as u8];
+        code += 1;
+    }
+    turn
+};
+
 /// The bits of a number at even places, moved together.
-fn even_bits(code: u32) -> u32 {
+const fn even_bits(code: u32) -> u32 {
     let mut x = code & 0x5555_5555;
     x = (x | x >> 1) & 0x3333_3333;
     x = (x | x >> 2) & 0x0f0f_0f0f;

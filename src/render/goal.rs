@@ -1,6 +1,9 @@
 //! Rendering towards an error or until a time.
 
-use std::time::{Duration, Instant};
+use std::{
+    f64::consts::SQRT_2,
+    time::{Duration, Instant},
+};
 
 use serde::{Deserialize, Serialize};
 
@@ -8,6 +11,7 @@ use super::{
     Outcome, RayCounts,
     adaptive::Adaptive,
     crew::{Crew, Sampler},
+    outlook::Worth,
     plane::Area,
     round::Threshold,
     watch::Watch,
@@ -18,18 +22,24 @@ const FIRST_STEP: f64 = 1024.0;
 const STEPS_TO_HALF: f64 = 2.0;
 /// The last step: thresholds below make no difference to an 8-bit picture.
 const LAST_STEP: u32 = 80;
-/// The picture's error goes about like this power of the threshold.
-const ERROR_POWER: f64 = 0.27;
+/// A pixel's squared error goes about like this power of the threshold: it falls like n^-1.6 with n samples, the rays of a stage grow
+/// like n, so its worth for each ray falls like n^-2.6.
+const ERROR_POWER: f64 = 1.6 / 2.6;
+/// The part of that which is left on average, because pixels go on by whole stages; rather too small, so as not to overshoot.
+const LEFT: f64 = 0.5;
 /// The rays that an error takes go about like this power of its inverse.
 const RAYS_POWER: f64 = 1.5;
-/// The part of a predicted jump down the ladder that is taken at once, so as not to overshoot.
-const JUMP: f64 = 0.6;
+/// The most levels of the ladder that are taken at once towards an error.
+const LONGEST_STEP: usize = 12;
 /// The part of the time left that a step of a time-limited picture should take.
 const SHARE_OF_TIME: f64 = 0.3;
 /// The levels of the ladder that a step takes at most: what is worth an eighth of the most can wait.
 const LEVELS_AT_ONCE: usize = 6;
 /// Less time than this is not worth a step.
 const SHORTEST: Duration = Duration::from_millis(4);
+
+/// The levels of the ladder.
+const LEVELS: usize = LAST_STEP as usize + 1;
 
 /// The threshold at a step of the ladder.
 fn at_step(step: u32) -> f32 {
@@ -105,16 +115,19 @@ impl Unfinished {
 
     /// Takes the step of the ladder, or the rest of it, as far as `watch` lets it.
     fn step_down<S: Sampler + Send>(&mut self, crew: &Crew<S>, wanted: f64, watch: &Watch) {
+        if !self.is_in_step {
+            self.is_in_step = true;
+            let demand = self.adaptive.demand();
+            self.step = demand.level_for_error(self.step as usize, wanted) as u32;
+        }
         let threshold = at_step(self.step);
-        self.is_in_step = true;
         self.adaptive.refine(crew, Threshold::PerRay(threshold), false, || watch.interrupts());
         if watch.interrupts() {
             return;
         }
         self.is_in_step = false;
         self.per_ray = Some(threshold);
-        let steps = STEPS_TO_HALF * (self.adaptive.estimated_rmse() / wanted).log2() / ERROR_POWER;
-        self.step += if steps.is_finite() { (steps * JUMP).max(1.0) as u32 } else { LAST_STEP / 4 };
+        self.step += 1;
     }
 
     /// How the picture ends if it has reached the error, or gets no nearer to it.
@@ -193,24 +206,61 @@ impl Unfinished {
     }
 }
 
+/// The first level of the ladder whose threshold the error for each ray of a pixel's next stage is above, if any is.
+fn level_of(worth: &Worth) -> Option<usize> {
+    if worth.error <= 0.0 {
+        return None;
+    }
+    let share = f64::from(worth.error) / (FIRST_STEP * f64::from(worth.rays));
+    // Twice the logarithm, rounded down, from the exponent and whether the mantissa is above the root of 2.
+    let (bits, mantissa) = (share.to_bits(), (1 << 52) - 1);
+    let is_upper = bits & mantissa >= SQRT_2.to_bits() & mantissa;
+    let level = 2 * (1023 - (bits >> 52) as i64) - i64::from(is_upper);
+    usize::try_from(level.max(0)).ok().filter(|level| *level < LEVELS)
+}
+
 /// How many rays the next stages of the pixels take, by the squared error for each ray that they are worth.
 pub(super) struct Demand {
     /// By powers of √2 of the threshold, from the top of the ladder down.
-    rays: [u64; LAST_STEP as usize + 1],
+    rays: [u64; LEVELS],
+    /// What those pixels, and what all others add to the picture's squared error.
+    expected: [f64; LEVELS],
+    settled: f64,
+    pixels: usize,
 }
 
 impl Demand {
     pub(super) fn new() -> Self {
-        Self { rays: [0; LAST_STEP as usize + 1] }
+        Self { rays: [0; LEVELS], expected: [0.0; LEVELS], settled: 0.0, pixels: 0 }
     }
 
-    /// Adds a stage that takes `rays` rays and is worth `per_ray` squared levels for each.
-    pub(super) fn add(&mut self, per_ray: f32, rays: u64) {
-        let step = STEPS_TO_HALF * (FIRST_STEP / f64::from(per_ray)).log2();
-        let step = step.ceil().max(0.0); // infinite for 0
-        if step <= f64::from(LAST_STEP) {
-            self.rays[step as usize] += rays;
+    /// Adds a pixel.
+    pub(super) fn add(&mut self, worth: &Worth) {
+        let expected = f64::from(worth.expected);
+        self.pixels += 1;
+        match level_of(worth) {
+            Some(level) => {
+                self.rays[level] += worth.rays.ceil() as u64;
+                self.expected[level] += expected;
+            }
+            None => self.settled += expected,
         }
+    }
+
+    /// The picture's squared error, summed over the pixels, once all above the level's threshold are refined.
+    fn forecast(&self, level: usize) -> f64 {
+        let halves = |above: usize| (level - above) as f64 / STEPS_TO_HALF;
+        let refined = |above: usize| LEFT * (-ERROR_POWER * halves(above)).exp2();
+        let above = self.expected[..=level].iter().enumerate();
+        let above: f64 = above.map(|(l, expected)| expected * refined(l)).sum();
+        self.settled + above + self.expected[level + 1..].iter().sum::<f64>()
+    }
+
+    /// The first level from `least` on by which the picture's error may be `wanted`, but not one too far on.
+    fn level_for_error(&self, least: usize, wanted: f64) -> usize {
+        let goal = wanted * wanted * self.pixels as f64;
+        let last = (least + LONGEST_STEP).min(LEVELS - 1);
+        (least..last).find(|&level| self.forecast(level) <= goal).unwrap_or(least.max(last))
     }
 
     /// The rays that stages worth at least the level's threshold take.
@@ -241,11 +291,15 @@ mod tests {
     fn demand_is_counted_by_level() {
         let mut demand = Demand::new();
         assert_eq!(demand.level_for(1.0), None);
-        demand.add(2000.0, 10); // above the first step
-        demand.add(512.0, 5); // two steps down
-        demand.add(500.0, 7); // three
-        demand.add(0.0, 100); // never
-        demand.add(1e-30, 100);
+        let mut add = |per_ray: f32, rays: f32, expected: f32| {
+            demand.add(&Worth { error: per_ray * rays, rays, expected });
+        };
+        add(2000.0, 10.0, 9.0); // above the first step
+        add(512.0, 5.0, 4.0); // two steps down
+        add(500.0, 7.0, 2.0); // three
+        add(0.0, 100.0, 0.0); // never
+        add(1e-30, 100.0, 0.5);
+        add(0.0, 0.0, 0.5);
         assert_eq!((demand.at_level(0), demand.at_level(2), demand.at_level(3)), (10, 15, 22));
         assert_eq!(demand.level_for(1.0), Some(0));
         assert_eq!(demand.level_for(11.0), Some(1));
@@ -253,5 +307,13 @@ mod tests {
         for (level, per_ray) in [(0, 2000.0), (2, 512.0), (3, 500.0)] {
             assert!(Demand::threshold(level) <= per_ray, "{level}");
         }
+        assert_eq!((demand.pixels, demand.forecast(0)), (6, 1.0 + 9.0 * LEFT + 4.0 + 2.0));
+        assert!(demand.forecast(2) < 9.0 * LEFT + 4.0 * LEFT + 3.0 && demand.forecast(80) > 1.0);
+        let error = |squared: f64| (squared / 6.0).sqrt();
+        assert_eq!(demand.level_for_error(0, error(12.0)), 0);
+        assert_eq!(demand.level_for_error(1, error(12.0)), 1);
+        assert_eq!(demand.level_for_error(0, error(9.0)), 2);
+        assert_eq!(demand.level_for_error(5, error(0.1)), 5 + LONGEST_STEP);
+        assert_eq!(demand.level_for_error(LEVELS, error(0.1)), LEVELS);
     }
 }

@@ -5,11 +5,11 @@ use std::sync::Mutex;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    crew::{Crew, Sampler, lock},
+    crew::{Crew, Sampler, in_turn, lock},
     look::{Window, corrected, skips_cells},
-    outlook::{Outlook, outlooks, tile_of},
+    outlook::{Outlook, Worth, outlooks, tile_of},
     plane::{Area, Plane},
-    round::Pixel,
+    round::{Chosen, Pixel, Threshold, is_disputed, is_picked},
 };
 use crate::{
     aa::{Sample, refined::Stage},
@@ -27,7 +27,9 @@ pub(super) struct Known {
     pub(super) colors: Plane<Rgb>,
     /// The rays through each pixel.
     pub(super) samples: Plane<u32>,
-    /// By tile.
+    /// What more rays are worth to each pixel.
+    pub(super) worths: Plane<Worth>,
+    /// The same by tile.
     pub(super) outlooks: Plane<Outlook>,
 }
 
@@ -38,6 +40,7 @@ impl Known {
             pixels: Plane::new(*area, Pixel::default()),
             colors: Plane::new(*area, Rgb::ZERO),
             samples: Plane::new(*area, 0),
+            worths: Plane::new(*area, Worth::default()),
             outlooks: outlooks(area),
         }
     }
@@ -58,35 +61,88 @@ impl Known {
                 if has_thin { sampler.least_samples(x as u32, y as u32) } else { 0 }
             };
             let looks = Window::of_centers(tile, centers).looks();
-            let (pixels, colors): (Vec<_>, Vec<_>) = tile
+            let (mut colors, mut worths) = (Vec::new(), Vec::new());
+            let pixels: Vec<Pixel> = tile
                 .pixels()
                 .zip(looks)
                 .map(|((x, y), look)| {
-                    let color =
-                        if look.inner { corrected(centers, x, y) } else { centers.at(x, y).color };
+                    let center = centers.at(x, y);
+                    let color = if look.inner { corrected(centers, x, y) } else { center.color };
                     let skips = look.suspect && skips_cells(centers, x, y);
                     let cells = if skips { LEAST_IN_CELLS } else { 0 };
                     let error = look.center_error(look.inner);
                     let pixel = Pixel {
                         suspect: look.suspect,
                         error,
-                        expected: error,
                         least: least(x, y).max(cells),
                         contrast: look.contrast,
                         busy: look.busy,
                         ..Pixel::default()
                     };
-                    (pixel, color)
+                    colors.push(color);
+                    worths.push(Worth::of(&pixel, error, stages, center));
+                    pixel
                 })
-                .unzip();
-            let outlook = Outlook::of(tile, &pixels, stages, centers);
+                .collect();
+            let outlook = Outlook::of(worths.iter());
             let samples = tile.pixels().map(|(x, y)| u32::from(centers.at(x, y).rays > 0));
             let mut known = lock(&known);
             known.pixels.put(tile, pixels);
             known.colors.put(tile, colors);
             known.samples.put(tile, samples);
+            known.worths.put(tile, worths);
             let (column, row) = tile_of(&area, tile.x0, tile.y0);
             *known.outlooks.at_mut(column, row) = outlook;
         });
+    }
+
+    /// The pixels of a part that are above the threshold, row by row.
+    pub(super) fn above(
+        &self,
+        part: &Area,
+        threshold: Threshold,
+    ) -> impl Iterator<Item = (i64, i64)> {
+        let (first, columns) = (part.x0, self.worths.columns(part));
+        (part.y0..part.y1).flat_map(move |y| {
+            let row = self.worths.nearest_row(y)[columns.clone()].iter().enumerate();
+            row.filter(move |(_, worth)| worth.exceeds(threshold))
+                .map(move |(column, _)| (first + column as i64, y))
+        })
+    }
+
+    /// Takes out the pixels of a tile that are above the threshold, so that those close together are close in the list.
+    pub(super) fn choose(&mut self, tile: &Area, threshold: Threshold) -> Vec<Chosen> {
+        let (column, row) = tile_of(self.pixels.area(), tile.x0, tile.y0);
+        let mut chosen = Vec::new();
+        if !self.outlooks.at(column, row).may_exceed(threshold) {
+            return chosen;
+        }
+        for (x, y) in in_turn(tile) {
+            let worth = *self.worths.at(x, y);
+            if worth.exceeds(threshold) && is_picked(threshold, x, y) {
+                let pixel = std::mem::take(self.pixels.at_mut(x, y));
+                chosen.push(Chosen { x, y, pixel, worth, has_changed: false });
+            }
+        }
+        chosen
+    }
+
+    /// Puts them back, with what became of them.
+    pub(super) fn put_back(&mut self, tile: &Area, chosen: Vec<Chosen>, centers: &Plane<Sample>) {
+        for Chosen { x, y, pixel, worth, has_changed } in chosen {
+            if let (true, Some(refined)) = (has_changed, &pixel.refined) {
+                *self.colors.at_mut(x, y) = refined.color();
+                // Corners that only neighbours wanted do not count, or it would depend on whether those are rendered.
+                let own = !pixel.suspect || is_disputed(centers, x, y);
+                *self.samples.at_mut(x, y) = 1 + u32::from(own) + refined.points();
+            }
+            *self.worths.at_mut(x, y) = worth;
+            *self.pixels.at_mut(x, y) = pixel;
+        }
+        let columns = self.worths.columns(tile);
+        let rows = (tile.y0..tile.y1).map(|y| &self.worths.nearest_row(y)[columns.clone()]);
+        let outlook = Outlook::of(rows.flatten());
+        let (column, row) = tile_of(self.pixels.area(), tile.x0, tile.y0);
+        *self.outlooks.at_mut(column, row) = outlook;
     }
 }

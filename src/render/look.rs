@@ -126,8 +126,10 @@ pub(super) fn skips_cells(centers: &Plane<Sample>, x: i64, y: i64) -> bool {
 
 /// The centre's colour with the second-order term of the integral over the pixel: c + (E + W + N + S - 4c)/24.
 pub(super) fn corrected(centers: &Plane<Sample>, x: i64, y: i64) -> Rgb {
-    let color = |x, y| centers.nearest(x, y).color;
-    let center = color(x, y);
-    let sides = color(x - 1, y) + color(x + 1, y) + color(x, y - 1) + color(x, y + 1);
+    let k = centers.nearest_column(x);
+    let [above, row, below] = [y - 1, y, y + 1].map(|y| centers.nearest_row(y));
+    let (center, last) = (row[k].color, row.len() - 1);
+    let (west, east) = (row[k.saturating_sub(1)].color, row[(k + 1).min(last)].color);
+    let sides = west + east + above[k].color + below[k].color;
     (center + (sides - center * 4.0) / 24.0).max(Rgb::ZERO).min(Rgb::ONE)
 }

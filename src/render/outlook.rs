@@ -4,39 +4,73 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     plane::{Area, Plane, TILE_SIDE},
-    round::{Pixel, Threshold, next_rays},
+    round::{Pixel, Threshold},
 };
 use crate::aa::{Sample, refined::Stage};
+
+/// Rays that the corners of a suspect pixel cost, most being shared or not traced; and those of one that is not suspect.
+const SHARED_CORNERS: f32 = 0.6;
+const OWN_CORNERS: f32 = 1.5;
+
+/// What more rays are worth to a pixel.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(super) struct Worth {
+    /// Its squared error if it may get more rays, else 0; infinite if it is to get them whatever its error.
+    pub(super) error: f32,
+    /// The rays of all kinds that its next stage is taken to cost.
+    pub(super) rays: f32,
+    /// What it adds to the picture's squared error.
+    pub(super) expected: f32,
+}
+
+impl Worth {
+    /// The worth of a pixel whose centre is `center` and which adds `expected` to the picture's error.
+    pub(super) fn of(pixel: &Pixel, expected: f32, stages: &[Stage], center: &Sample) -> Self {
+        let Some(next) = stages.get(usize::from(pixel.stage)) else {
+            return Self { error: 0.0, rays: 0.0, expected };
+        };
+        let camera_rays = match pixel.stage {
+            0 if pixel.suspect => SHARED_CORNERS,
+            0 => OWN_CORNERS,
+            _ => (next.points - pixel.points()) as f32,
+        };
+        let error = if pixel.is_due() { f32::INFINITY } else { pixel.error };
+        Self { error, rays: camera_rays * center.rays as f32, expected }
+    }
+
+    /// Whether the pixel is above the threshold and may get more rays.
+    #[inline]
+    pub(super) fn exceeds(&self, threshold: Threshold) -> bool {
+        let limit = match threshold {
+            Threshold::Error(limit) => limit,
+            Threshold::PerRay(limit) | Threshold::PerRayOfSome(limit, ..) => limit * self.rays,
+        };
+        (self.error > 0.0) & (self.error >= limit)
+    }
+}
 
 /// What is known of the pixels of a tile.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Outlook {
-    /// The largest squared error of a pixel that may get more rays; infinite if one is to get them whatever its error.
+    /// The largest error that more rays may lessen, and the largest for each ray.
     error: f32,
-    /// The largest for each ray of a pixel's next stage.
     per_ray: f32,
     /// What the pixels add to the picture's squared error.
     pub(super) expected: f64,
 }
 
 impl Outlook {
-    /// The outlook of a tile's pixels.
-    pub(super) fn of(
-        tile: &Area,
-        pixels: &[Pixel],
-        stages: &[Stage],
-        centers: &Plane<Sample>,
-    ) -> Self {
-        let mut outlook = Self::default();
-        for ((x, y), pixel) in tile.pixels().zip(pixels) {
-            outlook.expected += f64::from(pixel.expected);
-            if let Some(rays) = next_rays(stages, pixel, centers.at(x, y)) {
-                let error = if pixel.is_due() { f32::INFINITY } else { pixel.error };
-                outlook.error = outlook.error.max(error);
-                outlook.per_ray = outlook.per_ray.max(error / rays);
+    /// The outlook of a tile's pixels, row by row.
+    pub(super) fn of<'w>(worths: impl Iterator<Item = &'w Worth>) -> Self {
+        worths.fold(Self::default(), |outlook, worth| {
+            let (error, rays) = (worth.error, worth.rays);
+            let per_ray = if error > 0.0 { error / rays } else { 0.0 };
+            Self {
+                error: outlook.error.max(error),
+                per_ray: outlook.per_ray.max(per_ray),
+                expected: outlook.expected + f64::from(worth.expected),
             }
-        }
-        outlook
+        })
     }
 
     /// Whether any pixel that is off may get more rays.

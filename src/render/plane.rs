@@ -48,12 +48,6 @@ impl Area {
         (y - self.y0) as usize * self.width() + (x - self.x0) as usize
     }
 
-    /// The pixel at a place counted row by row.
-    pub(super) fn pixel_at(&self, place: usize) -> (i64, i64) {
-        let width = self.width();
-        (self.x0 + (place % width) as i64, self.y0 + (place / width) as i64)
-    }
-
     /// The area and `apron` pixels about it.
     pub(super) fn grown(&self, apron: i64) -> Self {
         Self { x0: self.x0 - apron, y0: self.y0 - apron, x1: self.x1 + apron, y1: self.y1 + apron }
@@ -124,6 +118,11 @@ impl<T> Plane<T> {
         &self.values[start..start + self.area.width()]
     }
 
+    /// The places in a row of the columns of `part`, which is within the area.
+    pub(super) fn columns(&self, part: &Area) -> std::ops::Range<usize> {
+        (part.x0 - self.area.x0) as usize..(part.x1 - self.area.x0) as usize
+    }
+
     /// The place in a row that is nearest to `x`.
     #[inline]
     pub(super) fn nearest_column(&self, x: i64) -> usize {
@@ -156,17 +155,5 @@ impl Plane<Sample> {
     /// Whether all samples of a tile have their rays.
     pub(super) fn is_traced(&self, tile: &Area) -> bool {
         tile.pixels().all(|(x, y)| self.at(x, y).rays > 0)
-    }
-}
-
-impl<T: Default> Plane<T> {
-    /// Takes the values of `tile`, row by row, out of their places.
-    pub(super) fn take(&mut self, tile: &Area) -> Vec<T> {
-        let mut taken = Vec::with_capacity(tile.len());
-        for y in tile.y0..tile.y1 {
-            let start = self.area.place_of(tile.x0, y);
-            taken.extend(self.values[start..start + tile.width()].iter_mut().map(std::mem::take));
-        }
-        taken
     }
 }

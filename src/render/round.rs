@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     crew::{Sampler, Scratch},
-    plane::{Area, Plane},
+    outlook::Worth,
+    plane::Plane,
 };
 use crate::{
     aa::{
@@ -17,10 +18,6 @@ use crate::{
     },
     color::Rgb,
 };
-
-/// Rays that the corners of a suspect pixel cost, most being shared or not traced; and those of one that is not suspect.
-const SHARED_CORNERS: f32 = 0.6;
-const OWN_CORNERS: f32 = 1.5;
 
 /// Samples that are taken without looking at the clock.
 const AT_ONCE: usize = 512;
@@ -45,8 +42,6 @@ pub(super) struct Pixel {
     pub(super) suspect: bool,
     /// The estimated squared error in levels, by which it is refined.
     pub(super) error: f32,
-    /// What it adds to the picture's.
-    pub(super) expected: f32,
     /// The contrast to the neighbours, zero unless suspect.
     pub(super) contrast: f32,
     /// How often things change around, from 0 to 1; zero unless suspect.
@@ -66,12 +61,15 @@ impl Pixel {
     pub(super) fn is_due(&self) -> bool {
         self.points() < self.least
     }
+}
 
-    /// Takes over the errors after a stage.
-    fn judge(&mut self, refined: &Refined) {
-        (self.error, self.expected) = refined.errors(self.contrast, self.busy);
-        self.stage += 1;
-    }
+/// A pixel above the threshold, taken out of the picture to be worked at.
+pub(super) struct Chosen {
+    pub(super) x: i64,
+    pub(super) y: i64,
+    pub(super) pixel: Pixel,
+    pub(super) worth: Worth,
+    pub(super) has_changed: bool,
 }
 
 /// Whether the four centres around a corner saw different things.
@@ -80,13 +78,6 @@ pub(super) fn is_disputed(centers: &Plane<Sample>, x: i64, y: i64) -> bool {
     [(x - 1, y), (x, y - 1), (x - 1, y - 1)]
         .iter()
         .any(|&(x, y)| centers.at(x, y).signature != signature)
-}
-
-pub(super) fn is_above(threshold: Threshold, error: f32, rays: f32) -> bool {
-    match threshold {
-        Threshold::Error(limit) => error > 0.0 && error >= limit,
-        Threshold::PerRay(limit) | Threshold::PerRayOfSome(limit, ..) => error >= limit * rays,
-    }
 }
 
 /// Whether the threshold is for this pixel at all.
@@ -104,31 +95,8 @@ pub(super) fn add_rays(spent: &AtomicU64, samples: &[Sample]) {
     spent.fetch_add(samples.iter().map(|s| u64::from(s.rays)).sum(), Ordering::Relaxed);
 }
 
-/// The rays of all kinds that the next of the `stages` of a pixel is taken to cost, if there is one.
-pub(super) fn next_rays(stages: &[Stage], pixel: &Pixel, center: &Sample) -> Option<f32> {
-    let next = stages.get(usize::from(pixel.stage))?;
-    let camera_rays = match pixel.stage {
-        0 if pixel.suspect => SHARED_CORNERS,
-        0 => OWN_CORNERS,
-        _ => (next.points - pixel.points()) as f32,
-    };
-    Some(camera_rays * center.rays as f32)
-}
-
-/// Whether a pixel is above the threshold and has a stage to go.
-pub(super) fn wants_next(
-    stages: &[Stage],
-    threshold: Threshold,
-    pixel: &Pixel,
-    center: &Sample,
-) -> bool {
-    next_rays(stages, pixel, center)
-        .is_some_and(|rays| pixel.points() < pixel.least || is_above(threshold, pixel.error, rays))
-}
-
-/// What the pixels of a tile need to know to get their next samples.
+/// What pixels need to know to get their next samples.
 pub(super) struct Round<'a> {
-    pub(super) area: &'a Area,
     pub(super) width: u32,
     pub(super) stages: &'a [Stage],
     pub(super) centers: &'a Plane<Sample>,
@@ -139,18 +107,15 @@ pub(super) struct Round<'a> {
 
 impl Round<'_> {
     /// Takes the corners into the pixels above the threshold that have only their centres.
-    pub(super) fn cross(&self, tile: &Area, pixels: &mut [Pixel], changed: &mut [bool]) {
+    pub(super) fn cross(&self, chosen: &mut [Chosen]) {
         let Some(corners) = self.stages.first() else { return };
-        for (index, (x, y)) in tile.pixels().enumerate() {
-            let (pixel, center) = (&mut pixels[index], self.centers.at(x, y));
-            if pixel.stage > 0
-                || !is_picked(self.threshold, x, y)
-                || !wants_next(self.stages, self.threshold, pixel, center)
-            {
+        for one in chosen {
+            let (x, y, center) = (one.x, one.y, self.centers.at(one.x, one.y));
+            if one.pixel.stage > 0 {
                 continue;
             }
             let corner = |(x, y): (i64, i64)| {
-                if !pixel.suspect || is_disputed(self.centers, x, y) {
+                if !one.pixel.suspect || is_disputed(self.centers, x, y) {
                     // Without rays it was to be traced, but time was up.
                     let sample = self.corners.at(x, y);
                     return (sample.rays > 0).then_some((sample.color, sample.signature));
@@ -164,28 +129,30 @@ impl Round<'_> {
             else {
                 continue;
             };
-            let refined = Refined::new(*corners, center, &[a, b, c, d]);
-            pixel.judge(&refined);
-            pixel.refined = Some(Box::new(refined));
-            changed[index] = true;
+            self.judge(one, Box::new(Refined::new(*corners, center, &[a, b, c, d])));
         }
     }
 
     /// Whether a pixel with corners wants the samples of its next stage.
-    pub(super) fn wants(&self, tile: &Area, pixel: &Pixel, index: usize) -> bool {
-        let (x, y) = tile.pixel_at(index);
-        pixel.stage > 0
-            && is_picked(self.threshold, x, y)
-            && wants_next(self.stages, self.threshold, pixel, self.centers.at(x, y))
+    pub(super) fn wants(&self, Chosen { pixel, worth, .. }: &Chosen) -> bool {
+        pixel.stage > 0 && worth.exceeds(self.threshold)
     }
 
-    /// Gives the pixels that want them the samples of their next stage; returns whether there was time for all.
+    /// Takes over what is known of a pixel after a stage.
+    fn judge(&self, one: &mut Chosen, refined: Box<Refined>) {
+        let pixel = &mut one.pixel;
+        let (error, expected) = refined.errors(pixel.contrast, pixel.busy);
+        (pixel.error, pixel.refined) = (error, Some(refined));
+        pixel.stage += 1;
+        one.worth = Worth::of(pixel, expected, self.stages, self.centers.at(one.x, one.y));
+        one.has_changed = true;
+    }
+
+    /// Gives the pixels in the places `wanting` the samples of their next stage; returns whether there was time for all.
     pub(super) fn give<S: Sampler + Send>(
         &self,
-        tile: &Area,
         wanting: &[usize],
-        pixels: &mut [Pixel],
-        changed: &mut [bool],
+        chosen: &mut [Chosen],
         (sampler, scratch): (&mut S, &mut Scratch),
         spent: &AtomicU64,
     ) -> bool {
@@ -198,42 +165,38 @@ impl Round<'_> {
             scratch.samples.clear();
             let mut count = 0;
             while count < rest.len() && scratch.places.len() < AT_ONCE {
-                self.next_places(tile, rest[count], &pixels[rest[count]], &mut scratch.places);
+                self.next_places(&chosen[rest[count]], &mut scratch.places);
                 count += 1;
             }
             sampler.sample(&scratch.places, &mut scratch.samples);
             add_rays(spent, &scratch.samples);
             let mut answers = scratch.samples.iter();
             let (now, later) = rest.split_at(count);
-            for &index in now {
-                self.advance(&mut pixels[index], &mut answers);
-                changed[index] = true;
+            for &place in now {
+                self.advance(&mut chosen[place], &mut answers);
             }
             rest = later;
         }
         true
     }
 
-    fn next_places(&self, tile: &Area, index: usize, pixel: &Pixel, places: &mut Vec<DVec2>) {
-        let (x, y) = tile.pixel_at(index);
-        debug_assert!(self.area.contains(x, y));
-        let number = y as u64 * u64::from(self.width) + x as u64;
+    fn next_places(&self, Chosen { x, y, pixel, .. }: &Chosen, places: &mut Vec<DVec2>) {
+        let number = *y as u64 * u64::from(self.width) + *x as u64;
         let sequence = Sequence::of_pixel(number, 0);
-        let corner = DVec2::new(x as f64, y as f64);
+        let corner = DVec2::new(*x as f64, *y as f64);
         let from = pixel.points();
         let to = self.stages.get(usize::from(pixel.stage)).map_or(from, |stage| stage.points);
         places.extend((from..to).map(|point| corner + sequence.place(point)));
     }
 
-    fn advance<'s>(&self, pixel: &mut Pixel, answers: &mut impl Iterator<Item = &'s Sample>) {
-        let next = self.stages.get(usize::from(pixel.stage));
-        if let (Some(stage), Some(mut refined)) = (next, pixel.refined.take()) {
+    fn advance<'s>(&self, one: &mut Chosen, answers: &mut impl Iterator<Item = &'s Sample>) {
+        let next = self.stages.get(usize::from(one.pixel.stage));
+        if let (Some(stage), Some(mut refined)) = (next, one.pixel.refined.take()) {
             refined.begin(*stage);
             for sample in answers.take((stage.points - refined.points()) as usize) {
                 refined.add(sample);
             }
-            pixel.judge(&refined);
-            pixel.refined = Some(refined);
+            self.judge(one, refined);
         }
     }
 }
