@@ -13,6 +13,11 @@ pub(crate) fn picture_bytes(width: u32, height: u32) -> u128 {
     Film::memory_bytes(width, height) + u128::from(width) * u128::from(height) * 6
 }
 
+/// Bytes that are kept of the pixels on the way to an error or a time, at least; those that are refined take about twice as much.
+pub(crate) fn goal_bytes(width: u32, height: u32) -> u128 {
+    u128::from(width) * u128::from(height) * 100
+}
+
 /// The most memory the program has held so far, in bytes; unknown except on Linux.
 pub(crate) fn peak() -> Option<u64> {
     kib_entry(&fs::read_to_string("/proc/self/status").ok()?, "VmHWM")

@@ -198,14 +198,18 @@ fn check_most([width, height]: [u32; 2]) -> Result<(), Failure> {
 }
 
 /// A picture larger than the memory at hand would end the program, or others, without a word.
-pub(crate) fn check_memory(label: &Label) -> Result<(), Failure> {
+pub(crate) fn check_memory(label: &Label, goal: Goal) -> Result<(), Failure> {
     let (width, height) = (label.place().width(), label.place().height());
     check_most([width, height])?;
-    let needed = memory::picture_bytes(width, height);
+    let (mut needed, mut way_out) = (memory::picture_bytes(width, height), "in parts with --tile");
+    if goal != Goal::Mode {
+        needed += memory::goal_bytes(width, height);
+        way_out = "with --aa adaptive:ERROR, which keeps less of each pixel";
+    }
     match memory::available().map(u128::from) {
         Some(available) if needed > available => Err(anyhow!(
-            "a picture of {width}x{height} pixels needs {} of memory, of which {} are free; choose \
-             a smaller --size, or render it in parts with --tile",
+            "a picture of {width}x{height} pixels needs {} of memory, of which {} are free; choose a smaller --size, or \
+             render it {way_out}",
             memory::readable(needed),
             memory::readable(available),
         ))?,

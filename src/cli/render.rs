@@ -55,7 +55,7 @@ pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
     }
     let reference = args.reference.as_deref().map(read_png_rgb8).transpose()?;
     for task in &tasks {
-        check_memory(&task.label)?;
+        check_memory(&task.label, task.options.goal)?;
         check_reference(&task.label, reference.as_ref())?;
     }
     let mut preview = Preview::open(args);

@@ -71,3 +71,25 @@ fn without_a_command_or_with_an_unknown_one_the_next_step_is_named() {
     assert_refused(&run(folder.path(), &["rendr"]), 2, &["rendr", "'render'"]);
     assert_refused(&run(folder.path(), &["zzz"]), 2, &["zzz", "--help"]);
 }
+
+/// Oracle: what the system says is free, of which a film of 22 bytes a pixel takes a third and all that is kept on the way to an error
+/// more than there is.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_picture_towards_an_error_that_no_memory_holds_is_refused() {
+    let table = std::fs::read_to_string("/proc/meminfo").expect("Linux");
+    let line = table.lines().find(|line| line.starts_with("MemAvailable")).expect("there");
+    let free: f64 = line.split_whitespace().nth(1).expect("a number").parse().expect("in KiB");
+    // No more than what is refused at once whatever there is; a machine with more than that says nothing here.
+    let pixels = (free * 1024.0 / 66.0).min(16.0 * f64::from(1 << 30) / 23.0);
+    if pixels * 120.0 < free * 1024.0 {
+        return;
+    }
+    let side = (pixels.sqrt() as u32).to_string();
+    let folder = folder();
+    let size = format!("{side}x{side}");
+    let output = run(folder.path(), &["render", "--max-error", "1", "--size", &size]);
+    let words = [&*size, "free", "--size", "--aa adaptive:ERROR"];
+    assert_refused(&output, 1, &words);
+    assert_eq!(names_in(folder.path()), [""; 0]);
+}
