@@ -1,6 +1,6 @@
 //! A scene's text against the table of keys: everything that is wrong, not only the first.
 
-use std::ops::Range as Span;
+use std::{borrow::Cow, ops::Range as Span};
 
 use toml::{
     Spanned,
@@ -11,6 +11,7 @@ use super::{
     Place,
     fault::{Fault, Faults},
     keys::{Key, Kind, SCENE},
+    lines::{Found, readable},
     nearest,
     sound::Sound,
     values::{is_in, listed, number, range_text, shown, unknown, vector, whole},
@@ -23,17 +24,15 @@ pub(super) type Value<'a> = Spanned<DeValue<'a>>;
 pub(super) struct Checker<'a> {
     name: &'a str,
     text: &'a str,
-    root: Spanned<DeTable<'a>>,
-    pub(super) faults: Vec<(Span<usize>, String)>,
+    /// The text without the lines that hide what follows them.
+    readable: Cow<'a, str>,
+    pub(super) faults: Vec<Found>,
 }
 
 impl<'a> Checker<'a> {
     pub(super) fn new(name: &'a str, text: &'a str) -> Self {
-        let (root, errors) = DeTable::parse_recoverable(text);
-        let fault = |error: &toml::de::Error| {
-            (error.span().unwrap_or(0..0), error.message().replace('\n', "; "))
-        };
-        Self { name, text, root, faults: errors.iter().map(fault).collect() }
+        let (readable, faults) = readable(text);
+        Self { name, text, readable, faults }
     }
 
     pub(super) fn fault(&mut self, span: Span<usize>, message: String) {
@@ -54,21 +53,21 @@ impl<'a> Checker<'a> {
     /// Finds the faults; `exists` says whether a file that is named is there. If there are any, what is sound beside them is given
     /// back.
     pub(super) fn check(&mut self, exists: &dyn Fn(&str) -> bool) -> Option<Sound> {
-        let root = std::mem::replace(&mut self.root, Spanned::new(0..0, DeTable::new()));
+        let (root, _) = DeTable::parse_recoverable(&self.readable);
+        let root = root.get_ref();
         // What could not be parsed may be what seems to be missing.
         let is_whole = self.faults.is_empty();
-        let walk = Walk { root: root.get_ref(), exists, is_whole };
-        walk.table(root.get_ref(), SCENE, 0..0, "the scene", &mut self.faults);
+        let walk = Walk { root, exists, is_whole };
+        walk.table(root, SCENE, 0..0, "the scene", &mut self.faults);
         // Only what is complete and names nothing that was lost is sound.
         let strict = Walk { is_whole: true, ..walk };
-        let sound = (!self.faults.is_empty()).then(|| Sound::read(&strict));
-        self.root = root;
-        sound
+        (!self.faults.is_empty()).then(|| Sound::read(&strict))
     }
 
     /// Where in the text a part of the scene is.
     pub(super) fn span(&self, place: &Place) -> Span<usize> {
-        let get = |key: &str| find(self.root.get_ref(), key);
+        let (root, _) = DeTable::parse_recoverable(&self.readable);
+        let get = |key: &str| find(root.get_ref(), key);
         let item = |key: &str, k: usize| get(key)?.get_ref().as_array()?.get(k);
         let named = |key: &str, name: &str| find(get(key)?.get_ref().as_table()?, name);
         let found = match place {
@@ -94,10 +93,15 @@ pub(super) struct Walk<'t, 'a> {
     is_whole: bool,
 }
 
-type Found = Vec<(Span<usize>, String)>;
-
 impl Walk<'_, '_> {
-    fn table(&self, table: &DeTable, keys: &[Key], at: Span<usize>, of: &str, found: &mut Found) {
+    fn table(
+        &self,
+        table: &DeTable,
+        keys: &[Key],
+        at: Span<usize>,
+        of: &str,
+        found: &mut Vec<Found>,
+    ) {
         for (name, value) in table {
             match keys.iter().find(|key| key.name == name.get_ref()) {
                 Some(key) => self.value(value, key.kind, key.name, found),
@@ -111,7 +115,14 @@ impl Walk<'_, '_> {
         }
     }
 
-    fn one_of(&self, table: &DeTable, keys: &[Key], at: Span<usize>, of: &str, found: &mut Found) {
+    fn one_of(
+        &self,
+        table: &DeTable,
+        keys: &[Key],
+        at: Span<usize>,
+        of: &str,
+        found: &mut Vec<Found>,
+    ) {
         for (name, value) in table {
             match keys.iter().find(|key| key.name == name.get_ref()) {
                 Some(key) => self.value(value, key.kind, key.name, found),
@@ -125,7 +136,7 @@ impl Walk<'_, '_> {
     }
 
     /// Finds what is wrong with the value of the key `name`.
-    pub(super) fn value(&self, value: &Value, kind: Kind, name: &str, found: &mut Found) {
+    pub(super) fn value(&self, value: &Value, kind: Kind, name: &str, found: &mut Vec<Found>) {
         let span = value.span();
         let mut wrong = |expected: &str| {
             let what = shown(value.get_ref());
@@ -207,7 +218,14 @@ impl Walk<'_, '_> {
         }
     }
 
-    fn vectors(&self, value: &Value, least: usize, most: usize, name: &str, found: &mut Found) {
+    fn vectors(
+        &self,
+        value: &Value,
+        least: usize,
+        most: usize,
+        name: &str,
+        found: &mut Vec<Found>,
+    ) {
         let Some(list) = value.get_ref().as_array() else {
             let what = shown(value.get_ref());
             found
@@ -229,7 +247,7 @@ impl Walk<'_, '_> {
     }
 
     /// Whether there is an entry of this name in the table that holds such names.
-    fn name(&self, text: &str, table: &str, key: &str, span: Span<usize>, found: &mut Found) {
+    fn name(&self, text: &str, table: &str, key: &str, span: Span<usize>, found: &mut Vec<Found>) {
         let entries = find(self.root, table).and_then(|value| value.get_ref().as_table());
         if entries.is_some_and(|entries| find(entries, text).is_some()) || !self.is_whole {
             return;

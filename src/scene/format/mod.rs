@@ -3,6 +3,7 @@
 mod check;
 mod fault;
 mod keys;
+mod lines;
 mod nearest;
 mod schema;
 mod sound;
