@@ -40,7 +40,7 @@ pub use self::{
 };
 use crate::{
     aa::AntiAliasing,
-    accel::{Accel, Isa},
+    accel::{Accel, Isa, Preset},
     camera::Camera,
     color::Rgb,
     geometry::{Hit, Ray, Shape, Similarity, Surface},
@@ -167,6 +167,17 @@ impl Scene {
     pub fn with_isa(mut self, isa: Isa) -> Self {
         self.accel.set_isa(isa);
         self
+    }
+
+    /// Arranges the primitives anew, in the time that `preset` allows; the picture is the same.
+    #[must_use]
+    pub fn rebuilt(self, preset: Preset) -> Self {
+        let isa = self.accel.isa();
+        let shapes = self.accel.into_shapes();
+        let building = Instant::now();
+        let accel = Accel::with_preset(shapes, preset);
+        let build_seconds = building.elapsed().as_secs_f64();
+        Self { accel, build_seconds, ..self }.with_isa(isa)
     }
 
     /// The number of primitives.
