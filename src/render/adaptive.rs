@@ -95,7 +95,7 @@ impl Adaptive {
                         };
                         let thin =
                             if has_thin { sampler.least_samples(x as u32, y as u32) } else { 0 };
-                        let skips = look.suspect && skips_cells(&centers, x, y);
+                        let skips = look.suspect && skips_cells(&centers, x, y, look.contrast);
                         let cells = if skips { LEAST_IN_CELLS } else { 0 };
                         let error = look.center_error(look.inner);
                         let pixel = Pixel {
