@@ -13,7 +13,8 @@ use super::{
     Outcome, Picture,
     crew::{Crew, Sampler, in_turn, lock, trace_centers},
     goal::Demand,
-    look::{Window, corrected, skips_cells},
+    hidden::hidden_error,
+    look::{ONE_COLOR, Window, corrected, skips_cells},
     outlook::{Outlook, outlooks, tile_of},
     plane::{Area, Plane},
     round::{
@@ -56,6 +57,21 @@ struct Known {
     outlooks: Plane<Outlook>,
 }
 
+impl Known {
+    /// Adds what may hide at these places to what the picture is expected to be off by.
+    fn expect_hidden(&mut self, mut places: Vec<(i64, i64)>) {
+        let area = *self.pixels.area();
+        // Sums depend on their order, which that of the tiles must not.
+        places.sort_unstable_by_key(|&(x, y)| (y, x));
+        for (x, y) in places {
+            let hidden = hidden_error(&area, &self.pixels, x, y);
+            self.pixels.at_mut(x, y).expected += hidden;
+            let (column, row) = tile_of(&area, x, y);
+            self.outlooks.at_mut(column, row).expected += f64::from(hidden);
+        }
+    }
+}
+
 impl Adaptive {
     /// Traces the centres of `area`, and of the pixels around it, so that a part of a picture is that of the whole.
     ///
@@ -78,6 +94,7 @@ impl Adaptive {
             outlooks: outlooks(area),
         });
         let has_thin = (crew.new_sampler)().has_thin();
+        let of_one_color = Mutex::new(Vec::new());
         crew.run(
             area,
             false,
@@ -111,6 +128,10 @@ impl Adaptive {
                     })
                     .unzip();
                 let outlook = Outlook::of(tile, &own_pixels, &stages, &centers);
+                let is_of_one_color =
+                    |(_, pixel): &(_, &Pixel)| pixel.suspect && pixel.contrast < ONE_COLOR;
+                let found = tile.pixels().zip(&own_pixels).filter(is_of_one_color);
+                lock(&of_one_color).extend(found.map(|(place, _)| place));
                 let mut known = lock(&known);
                 known.pixels.put(tile, own_pixels);
                 known.colors.put(tile, own_colors);
@@ -118,13 +139,15 @@ impl Adaptive {
                 *known.outlooks.at_mut(column, row) = outlook;
             },
         );
+        let mut known = known.into_inner().unwrap_or_else(PoisonError::into_inner);
+        known.expect_hidden(of_one_color.into_inner().unwrap_or_else(PoisonError::into_inner));
         Self {
             area: *area,
             width,
             stages,
             centers,
             corners: Plane::new(area.corners(), Sample::default()),
-            known: known.into_inner().unwrap_or_else(PoisonError::into_inner),
+            known,
             spent: AtomicU64::new(spent),
         }
     }

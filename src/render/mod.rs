@@ -4,6 +4,7 @@ mod adaptive;
 mod blocks;
 mod crew;
 mod goal;
+mod hidden;
 mod look;
 mod outlook;
 mod plain;
