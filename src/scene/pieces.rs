@@ -14,7 +14,8 @@ const TURNS: usize = 8;
 /// The pieces of a mesh, each in the rod about it. Corners at the same place are the same corner.
 pub(super) fn rods(mesh: &Mesh) -> Vec<Rod> {
     let vertices = mesh.vertices();
-    let mut piece_of = pieces(mesh);
+    let corners = weld(vertices);
+    let mut piece_of = pieces(mesh, &corners);
     let mut pieces = Vec::new();
     for vertex in 0..vertices.len() {
         let first = piece_of[vertex] as usize;
@@ -25,7 +26,10 @@ pub(super) fn rods(mesh: &Mesh) -> Vec<Rod> {
         } else {
             piece_of[vertex] = piece_of[first];
         }
-        pieces[piece_of[vertex] as usize].add(vertices[vertex]);
+        // A corner that faces have a vertex each for counts once.
+        if corners[vertex] as usize == vertex {
+            pieces[piece_of[vertex] as usize].add(vertices[vertex]);
+        }
     }
     for piece in &mut pieces {
         piece.turn();
@@ -36,10 +40,10 @@ pub(super) fn rods(mesh: &Mesh) -> Vec<Rod> {
     pieces.iter().map(Piece::rod).collect()
 }
 
-/// The first vertex of each vertex's piece.
-fn pieces(mesh: &Mesh) -> Vec<u32> {
+/// The first vertex of each vertex's piece; `corners` are the first ones in the same places.
+fn pieces(mesh: &Mesh, corners: &[u32]) -> Vec<u32> {
     // Links to earlier vertices, which end at the first one of a piece.
-    let mut links = weld(mesh.vertices());
+    let mut links = corners.to_vec();
     for corners in mesh.triangles() {
         let firsts = corners.map(|corner| first(&mut links, corner));
         let least = firsts.into_iter().min().unwrap_or(firsts[0]);
