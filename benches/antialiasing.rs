@@ -14,6 +14,7 @@ const SIDE: u32 = 128;
 fn modes(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("antialiasing");
     group.sample_size(10).warm_up_time(Duration::from_millis(500));
+    group.measurement_time(Duration::from_secs(2));
     group.throughput(Throughput::Elements(u64::from(SIDE * SIDE)));
     for objects in [10, 1_000, 10_000, 100_000, 1_000_000] {
         let scene = load_builtin_of("spheres", Some(objects)).expect("a scene");

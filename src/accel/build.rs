@@ -8,6 +8,8 @@
 //! TVCG* 24(3), 2018; "Parallel Reinsertion for Bounding Volume Hierarchy Optimization", *Computer Graphics Forum*
 //! 37(2), 2018.
 
+use std::fmt::{self, Display, Formatter};
+
 use glam::{Vec3, Vec3A};
 use obvhs::{
     aabb::Aabb,
@@ -52,6 +54,33 @@ fn unit_vector(state: &mut u64) -> Vec3A {
     Vec3A::new(part(0), part(21), part(42))
 }
 
+/// How much time the build of a tree may take. One that took longer is no slower to trace; every answer is the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Preset {
+    /// The least time: a tree as it comes, not improved.
+    Fast,
+    /// What a picture or two gain by: more, the fewer primitives there are.
+    #[default]
+    Auto,
+    /// More than a single picture gives back.
+    Thorough,
+}
+
+impl Preset {
+    /// All there are, from the fastest build to the slowest.
+    pub const ALL: [Self; 3] = [Self::Fast, Self::Auto, Self::Thorough];
+}
+
+impl Display for Preset {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::Fast => "fast",
+            Self::Auto => "auto",
+            Self::Thorough => "thorough",
+        })
+    }
+}
+
 /// How much obvhs does for a tree.
 struct Effort {
     /// How far along the curve each box looks for a partner, after the first passes, which take the next one.
@@ -62,22 +91,27 @@ struct Effort {
 }
 
 impl Effort {
-    /// More for a scene of `meshes` or of few primitives, as long as it takes less time than the rays of a small picture.
-    fn for_boxes(count: usize, meshes: bool) -> Self {
-        let (reach, first_passes, reinsertion): (_, _, &[f32]) = match count {
-            0..=2_000 => (PlocSearchDistance::Medium, 1, &[1.0, 1.0]),
-            2_001..=20_000 => (PlocSearchDistance::Medium, 3, &[0.05, 0.1]),
-            _ if meshes => (PlocSearchDistance::Medium, 3, &[0.02]),
-            _ => (PlocSearchDistance::Minimum, 0, &[0.01]),
+    /// By [`Preset::Auto`] more for a scene of `meshes` or of few primitives, as long as it takes less time than the rays of a
+    /// small picture.
+    fn new(preset: Preset, count: usize, meshes: bool) -> Self {
+        use Preset::{Auto, Fast, Thorough};
+        let (reach, first_passes, reinsertion): (_, _, &[f32]) = match (preset, count) {
+            (Fast, _) => (PlocSearchDistance::Minimum, 0, &[]),
+            (Auto, 0..=2_000) | (Thorough, 0..=20_000) => {
+                (PlocSearchDistance::Medium, 1, &[1.0, 1.0])
+            }
+            (Auto, 2_001..=20_000) | (Thorough, _) => (PlocSearchDistance::Medium, 3, &[0.05, 0.1]),
+            (Auto, _) if meshes => (PlocSearchDistance::Medium, 3, &[0.02]),
+            (Auto, _) => (PlocSearchDistance::Minimum, 0, &[0.01]),
         };
         Self { reach, first_passes, reinsertion }
     }
 }
 
-/// The binary tree that obvhs builds over `boxes`, of a scene of `meshes` or not; the two children of a node are next to
+/// The binary tree that obvhs builds over `boxes` by `preset`, of a scene of `meshes` or not; the two children of a node are next to
 /// each other, the root is first, and a leaf's index is that of its one box.
-pub(super) fn binary(boxes: Vec<Aabb>, meshes: bool) -> Vec<Bvh2Node> {
-    let Effort { reach, first_passes, reinsertion } = Effort::for_boxes(boxes.len(), meshes);
+pub(super) fn binary(boxes: Vec<Aabb>, meshes: bool, preset: Preset) -> Vec<Bvh2Node> {
+    let Effort { reach, first_passes, reinsertion } = Effort::new(preset, boxes.len(), meshes);
     let precision = if boxes.len() <= 2_000 { SortPrecision::U128 } else { SortPrecision::U64 };
     let indices = (0..boxes.len() as u32).collect();
     let mut bvh = PlocBuilder::with_capacity(boxes.len()).build(

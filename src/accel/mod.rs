@@ -42,6 +42,7 @@ use crate::geometry::{
     hit::Crossings,
     lanes::{HitLanes, RayLanes, lanes},
 };
+pub use build::Preset;
 use crossed::Crossed;
 use division::Division;
 use packet::{BlockedPacket, NearestPacket};
@@ -95,13 +96,20 @@ pub struct Accel {
 impl Accel {
     /// Arranges `shapes`; a primitive's number is its place in them.
     pub fn build(shapes: Vec<Shape>) -> Self {
-        Self::with_isa(shapes, Isa::detect())
+        Self::with_preset(shapes, Preset::Auto)
     }
 
     /// As [`Accel::build`], with queries by the instructions of `isa`, or the portable ones where the machine lacks them.
     pub fn with_isa(shapes: Vec<Shape>, isa: Isa) -> Self {
+        let mut accel = Self::build(shapes);
+        accel.set_isa(isa);
+        accel
+    }
+
+    /// As [`Accel::build`], but in the time that `preset` allows.
+    pub fn with_preset(shapes: Vec<Shape>, preset: Preset) -> Self {
         let Division { inside, outside, frame, bounds } = Division::of(&shapes);
-        let mut wide = frame.map(|frame| (arrange(&shapes, &inside, &frame), frame));
+        let mut wide = frame.map(|frame| (arrange(&shapes, &inside, &frame, preset), frame));
         drop(inside);
         let mut numbers =
             wide.as_mut().map_or_else(Vec::new, |(wide, _)| mem::take(&mut wide.order));
@@ -117,7 +125,7 @@ impl Accel {
         if shapes.len() >= LARGE {
             huge::give_back();
         }
-        let mut accel = Self {
+        Self {
             tree,
             #[cfg(feature = "leaf-study")]
             naive: shapes.iter().map(study::NaiveShape::new).collect(),
@@ -126,12 +134,15 @@ impl Accel {
             places,
             inside,
             bounds,
-            isa: Isa::Portable,
+            isa: Isa::detect(),
             #[cfg(test)]
             ran: tests::pictures::Ran::default(),
-        };
-        accel.set_isa(isa);
-        accel
+        }
+    }
+
+    /// The primitives, in the order of their numbers.
+    pub fn into_shapes(self) -> Vec<Shape> {
+        in_order(self.shapes, &self.places)
     }
 
     /// Has queries use the instructions of `isa`, or the portable ones where the machine lacks them.

@@ -6,7 +6,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{
-    build,
+    build::{self, Preset},
     collapse::{Kind, Wide, collapse},
     frame::Frame,
     huge,
@@ -18,11 +18,11 @@ use super::{
 use crate::geometry::Shape;
 
 /// The nodes of the tree over the primitives `inside`, and their order.
-pub(super) fn arrange(shapes: &[Shape], inside: &[u32], frame: &Frame) -> Wide {
+pub(super) fn arrange(shapes: &[Shape], inside: &[u32], frame: &Frame, preset: Preset) -> Wide {
     let boxes = || build::boxes(shapes, inside, frame);
     let kinds: Vec<Kind> = inside.par_iter().map(|k| Kind::of(&shapes[*k as usize])).collect();
     let meshes = kinds.iter().take(64).any(|kind| *kind == Kind::Triangle);
-    let wide = collapse(&build::binary(boxes(), meshes), &kinds);
+    let wide = collapse(&build::binary(boxes(), meshes, preset), &kinds);
     let mut wide =
         if wide.depth > MAX_DEPTH { collapse(&build::balanced(&boxes()), &kinds) } else { wide };
     for place in &mut wide.order {

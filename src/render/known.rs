@@ -1,12 +1,13 @@
 //! What is known of the pixels of a picture that gets better.
 
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 
 use serde::{Deserialize, Serialize};
 
 use super::{
     crew::{Crew, Sampler, in_turn, lock},
-    look::{Window, corrected, skips_cells},
+    hidden::hidden_error,
+    look::{ONE_COLOR, Window, corrected, skips_cells},
     outlook::{Outlook, Worth, outlooks, tile_of},
     plane::{Area, Plane},
     round::{Chosen, Pixel, Threshold, is_disputed, is_picked},
@@ -54,7 +55,8 @@ impl Known {
     ) {
         let area = *self.pixels.area();
         let has_thin = (crew.new_sampler)().has_thin();
-        let known = Mutex::new(self);
+        let of_one_color = Mutex::new(Vec::new());
+        let known = Mutex::new(&mut *self);
         let never = || false;
         crew.run(&area, false, never, |sampler, _, tile| {
             let least = |x: i64, y: i64| {
@@ -68,7 +70,7 @@ impl Known {
                 .map(|((x, y), look)| {
                     let center = centers.at(x, y);
                     let color = if look.inner { corrected(centers, x, y) } else { center.color };
-                    let skips = look.suspect && skips_cells(centers, x, y);
+                    let skips = look.suspect && skips_cells(centers, x, y, look.contrast);
                     let cells = if skips { LEAST_IN_CELLS } else { 0 };
                     let error = look.center_error(look.inner);
                     let pixel = Pixel {
@@ -85,6 +87,10 @@ impl Known {
                 })
                 .collect();
             let outlook = Outlook::of(worths.iter());
+            let is_of_one_color =
+                |(_, pixel): &(_, &Pixel)| pixel.suspect && pixel.contrast < ONE_COLOR;
+            let found = tile.pixels().zip(&pixels).filter(is_of_one_color);
+            lock(&of_one_color).extend(found.map(|(place, _)| place));
             let samples = tile.pixels().map(|(x, y)| u32::from(centers.at(x, y).rays > 0));
             let mut known = lock(&known);
             known.pixels.put(tile, pixels);
@@ -94,6 +100,20 @@ impl Known {
             let (column, row) = tile_of(&area, tile.x0, tile.y0);
             *known.outlooks.at_mut(column, row) = outlook;
         });
+        self.expect_hidden(of_one_color.into_inner().unwrap_or_else(PoisonError::into_inner));
+    }
+
+    /// Adds what may hide at these places to what the picture is expected to be off by.
+    fn expect_hidden(&mut self, mut places: Vec<(i64, i64)>) {
+        let area = *self.pixels.area();
+        // Sums depend on their order, which that of the tiles must not.
+        places.sort_unstable_by_key(|&(x, y)| (y, x));
+        for (x, y) in places {
+            let hidden = hidden_error(&area, &self.pixels, x, y);
+            self.worths.at_mut(x, y).expected += hidden;
+            let (column, row) = tile_of(&area, x, y);
+            self.outlooks.at_mut(column, row).expected += f64::from(hidden);
+        }
     }
 
     /// The pixels of a part that are above the threshold, row by row.

@@ -11,6 +11,10 @@ use crate::{
 /// The widest tile.
 const SIDE: usize = TILE_SIDE as usize;
 
+/// The least contrast, in squared levels, of a pixel whose eight neighbours are not all of its own colour to the eye: two levels off
+/// on average.
+pub(super) const ONE_COLOR: f32 = 8.0 * 4.0;
+
 /// The centres of a tile and of the pixels around it, encoded; pixels outside of what is known repeat those at its edge.
 pub(super) struct Window {
     /// Display levels, channel by channel.
@@ -114,14 +118,23 @@ impl Window {
     }
 }
 
-/// Whether a pixel is about as wide as the cells of the pattern in it: all neighbours but two at most met others than its centre. Where
-/// cells are wider, no more than five do.
-pub(super) fn skips_cells(centers: &Plane<Sample>, x: i64, y: i64) -> bool {
+/// Whether a suspect pixel is about as wide as the cells of the pattern in it, so that some may lie unseen between the centres about
+/// it; `contrast` is its [`Look`]'s.
+///
+/// So it is where all neighbours but two at most met other cells than its own; where cells are wider, no more than five do. So it is
+/// too where one at a side did, though all have the same colour: where two cells meet their colours differ, so there is another
+/// one on the way.
+pub(super) fn skips_cells(centers: &Plane<Sample>, x: i64, y: i64, contrast: f32) -> bool {
     const MOST_ALIKE: usize = 2;
     let cell = centers.at(x, y).cell;
-    let alike =
-        |dy: i64| (-1..=1).filter(move |dx| centers.nearest(x + dx, y + dy).cell == cell).count();
-    cell != 0 && (-1..=1).map(alike).sum::<usize>() <= MOST_ALIKE + 1
+    if cell == 0 {
+        return false;
+    }
+    let is_own = |dx: i64, dy: i64| centers.nearest(x + dx, y + dy).cell == cell;
+    let alike = |dy: i64| (-1..=1).filter(move |dx| is_own(*dx, dy)).count();
+    (-1..=1).map(alike).sum::<usize>() <= MOST_ALIKE + 1
+        || contrast < ONE_COLOR
+            && ![(-1, 0), (1, 0), (0, -1), (0, 1)].iter().all(|&(dx, dy)| is_own(dx, dy))
 }
 
 /// The centre's colour with the second-order term of the integral over the pixel: c + (E + W + N + S - 4c)/24.
@@ -132,4 +145,25 @@ pub(super) fn corrected(centers: &Plane<Sample>, x: i64, y: i64) -> Rgb {
     let (west, east) = (row[k.saturating_sub(1)].color, row[(k + 1).min(last)].color);
     let sides = west + east + above[k].color + below[k].color;
     (center + (sides - center * 4.0) / 24.0).max(Rgb::ZERO).min(Rgb::ONE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Oracle: rows of cells of which every second one is skipped look alike, but are not one cell.
+    #[test]
+    fn cells_between_those_of_one_colour_are_noticed() {
+        let area = Area { x0: 0, y0: 0, x1: 3, y1: 3 };
+        let skips = |cell_of: fn(i64, i64) -> i64, contrast: f32| {
+            let sample = |(x, y)| Sample { cell: cell_of(x, y) as u32, ..Sample::default() };
+            skips_cells(&Plane::from_fn(area, sample), 1, 1, contrast)
+        };
+        assert!(skips(|_, y| 1 + y / 2, 1.0) && skips(|x, _| 1 + (x + 1) / 2, 1.0));
+        // An edge between two cells, one cell, and no pattern.
+        assert!(!skips(|_, y| 1 + y / 2, 1e4));
+        assert!(!skips(|_, _| 5, 1.0) && !skips(|_, _| 0, 1.0));
+        // Cells narrower than a pixel.
+        assert!(skips(|x, y| 1 + x + 3 * y, 1e4));
+    }
 }

@@ -4,6 +4,7 @@ mod adaptive;
 mod blocks;
 mod crew;
 mod goal;
+mod hidden;
 mod known;
 mod look;
 mod outlook;

@@ -91,6 +91,12 @@ impl<T: Clone> Plane<T> {
 }
 
 impl<T> Plane<T> {
+    /// The values that `of` has for the area's pixels.
+    #[cfg(test)]
+    pub(super) fn from_fn(area: Area, of: impl FnMut((i64, i64)) -> T) -> Self {
+        Self { area, values: area.pixels().map(of).collect() }
+    }
+
     pub(super) fn area(&self) -> &Area {
         &self.area
     }

@@ -12,12 +12,13 @@ const ACROSS: f64 = 2.0;
 
 /// The least number of samples of pixels that something thin touches, as the camera sees it; 0 elsewhere.
 ///
-/// Thin are spheres, cylinders and cones narrower than a pixel and a half, hidden or not: two samples across their width, as
-/// even as those are, meet what lies across a pixel. None if there is nothing thin.
+/// Thin are spheres, cylinders, cones and pieces of meshes narrower than a pixel and a half, hidden or not: two samples across their
+/// width, as even as those are, meet what lies across a pixel. None if there is nothing thin.
 pub(super) fn least_samples(scene: &Scene, view: &View, area: &Area) -> Option<Plane<u32>> {
     let mut least: Option<Plane<u32>> = None;
-    for primitive in 0..scene.primitive_count() as u32 {
-        let Some(([from, to], radius)) = scene.shape(primitive).axis() else { continue };
+    let primitives = 0..scene.primitive_count() as u32;
+    let round = primitives.filter_map(|primitive| scene.shape(primitive).axis());
+    for ([from, to], radius) in round.chain(scene.pieces().iter().copied()) {
         let (Some((a, pixel_a)), Some((b, pixel_b))) = (view.place(from), view.place(to)) else {
             continue; // at or behind the camera
         };

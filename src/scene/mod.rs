@@ -16,6 +16,7 @@ pub mod obj;
 pub mod open;
 mod orbit;
 mod parts;
+mod pieces;
 mod report;
 mod shapes;
 mod stage;
@@ -26,7 +27,11 @@ pub mod text;
 mod values;
 mod warning;
 
-use std::{ops::ControlFlow, sync::Arc, time::Instant};
+use std::{
+    ops::ControlFlow,
+    sync::{Arc, OnceLock},
+    time::Instant,
+};
 
 pub use self::{
     builtin::{Builtin, builtins, load_builtin, load_builtin_of},
@@ -40,14 +45,15 @@ pub use self::{
 };
 use crate::{
     aa::AntiAliasing,
-    accel::{Accel, Isa},
+    accel::{Accel, Isa, Preset},
     camera::Camera,
     color::Rgb,
-    geometry::{Hit, Ray, Shape, Similarity, Surface},
+    geometry::{Hit, Mesh, Ray, Shape, Similarity, Surface},
     light::Light,
     material::Material,
 };
 use load::ImageSource;
+pub(crate) use pieces::Rod;
 
 /// A scene, ready to trace.
 #[derive(Debug)]
@@ -65,6 +71,9 @@ pub struct Scene {
     lights: Vec<Light>,
     materials: Vec<Material>,
     material_of: Vec<u32>,
+    meshes: Vec<Arc<Mesh>>,
+    /// Of all meshes; made when they are asked for.
+    pieces: OnceLock<Vec<Rod>>,
     accel: Accel,
     build_seconds: f64,
 }
@@ -109,10 +118,12 @@ impl Scene {
         let Parts { resolution, depth, shapes, mut material_of, materials, lights, .. } = parts;
         // In place: there may be gigabytes of them.
         let mut shapes: Vec<Shape> = shapes.into_iter().map(|shape| shape.mapped(&map)).collect();
+        let mut meshes = Vec::new();
         for MeshPart { mesh, material_of: of_faces } in parts.meshes {
             let mesh = Arc::new(mesh.mapped(&map));
             shapes.extend(mesh.faces().map(Shape::from));
             material_of.extend(of_faces);
+            meshes.push(mesh);
         }
         let building = Instant::now();
         let accel = Accel::build(shapes);
@@ -131,6 +142,8 @@ impl Scene {
                 .collect(),
             materials: materials.into_iter().map(|m| m.mapped(&map)).collect(),
             material_of,
+            meshes,
+            pieces: OnceLock::new(),
             accel,
             build_seconds: building.elapsed().as_secs_f64(),
             map,
@@ -167,6 +180,17 @@ impl Scene {
     pub fn with_isa(mut self, isa: Isa) -> Self {
         self.accel.set_isa(isa);
         self
+    }
+
+    /// Arranges the primitives anew, in the time that `preset` allows; the picture is the same.
+    #[must_use]
+    pub fn rebuilt(self, preset: Preset) -> Self {
+        let isa = self.accel.isa();
+        let shapes = self.accel.into_shapes();
+        let building = Instant::now();
+        let accel = Accel::with_preset(shapes, preset);
+        let build_seconds = building.elapsed().as_secs_f64();
+        Self { accel, build_seconds, ..self }.with_isa(isa)
     }
 
     /// The number of primitives.
@@ -232,6 +256,12 @@ impl Scene {
 
     pub(crate) fn shape(&self, primitive: u32) -> &Shape {
         self.accel.shape(primitive)
+    }
+
+    /// The pieces of the meshes, each in the rod about it.
+    pub(crate) fn pieces(&self) -> &[Rod] {
+        let of_meshes = || self.meshes.iter().flat_map(|mesh| pieces::rods(mesh)).collect();
+        self.pieces.get_or_init(of_meshes)
     }
 
     #[inline(always)]

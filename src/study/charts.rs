@@ -62,6 +62,10 @@ pub fn charts(rows: &[Row]) -> Vec<Chart> {
     if !depths.is_empty() {
         charts.push(error_by_depth(&depths));
     }
+    let builds = of(Trade::Build);
+    if !builds.is_empty() {
+        charts.push(time_by_build(&builds));
+    }
     charts
 }
 
@@ -221,6 +225,29 @@ fn error_by_depth(rows: &[&Row]) -> Chart {
     plot("depth", "What a lower limit of the recursion loses", x, y, &series)
 }
 
+fn time_by_build(rows: &[&Row]) -> Chart {
+    let series: Vec<Series> = names(rows, |row| &row.scene)
+        .into_iter()
+        .zip(COLORS.iter().cycle())
+        .map(|(scene, color)| {
+            let own = || rows.iter().filter(|row| row.scene == scene);
+            Series {
+                points: own().map(|row| (row.build_seconds, row.seconds)).collect(),
+                labels: own().map(|row| row.build.clone()).collect(),
+                name: scene.clone(),
+                color: *color,
+                line: true,
+                dots: true,
+            }
+        })
+        .collect();
+    let (width, height) = rows.first().map_or((0, 0), |row| (row.width, row.height));
+    let title =
+        format!("What a longer build of the tree gives back: {width}x{height}, one ray per pixel");
+    let (x, y) = (("build, seconds", true), ("picture, seconds", true));
+    plot("build", &title, x, y, &series)
+}
+
 /// An axis: what stands at it, and how numbers become places.
 struct Axis {
     log: bool,
@@ -320,12 +347,11 @@ fn plot(name: &str, title: &str, x_name: AxisName, y_name: AxisName, series: &[S
                 drawing.disc(*point, 4.0, series.color);
             }
             if let Some(label) = series.labels.get(k) {
-                drawing.text(
-                    (point.0 + LETTER, point.1 - LETTER),
-                    label,
-                    Anchor::Start,
-                    series.color,
-                );
+                // To the left where it would run into the names.
+                let fits = point.0 + LETTER * (label.len() + 1) as f64 <= right;
+                let (side, anchor) = if fits { (1.0, Anchor::Start) } else { (-1.0, Anchor::End) };
+                let at = (point.0 + side * LETTER, point.1 - LETTER);
+                drawing.text(at, label, anchor, series.color);
             }
         }
         let y = top + 10.0 + 20.0 * f64::from(place);

@@ -3,7 +3,7 @@
 use std::num::NonZeroUsize;
 
 use super::Mode;
-use crate::aa::AntiAliasing;
+use crate::{aa::AntiAliasing, accel::Preset};
 
 /// What to measure, and how thoroughly.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,13 +16,15 @@ pub struct Plan {
     pub objects: Vec<u32>,
     /// The modes for it, and for the sizes.
     pub few_modes: Vec<Mode>,
+    /// The numbers of spheres for which trees are built by each preset.
+    pub builds: Vec<u32>,
     /// The scene for depths and sizes.
     pub depth_scene: String,
     /// The sizes.
     pub sizes: Vec<[u32; 2]>,
     /// The size of the pictures of `scenes`, and that of the others.
     pub size: [u32; 2],
-    /// The size of the pictures of `objects` and depths.
+    /// The size of the pictures of `objects`, `builds` and depths.
     pub small_size: [u32; 2],
     /// How many rays each pixel of a converged picture has.
     pub reference_rays: u32,
@@ -55,6 +57,7 @@ impl Plan {
             modes,
             objects: (0..=6).map(|power| 10_u32.pow(power)).collect(),
             few_modes: plain(&["none", "grid:2", "grid:4", "adaptive:16", "adaptive:4"]),
+            builds: (4..=6).map(|power| 10_u32.pow(power)).collect(),
             depth_scene: "assignment".to_owned(),
             sizes: vec![[150, 150], [300, 300], [600, 600]],
             size: [600, 600],
@@ -74,6 +77,7 @@ impl Plan {
             modes,
             objects: (0..=4).map(|power| 10_u32.pow(power)).collect(),
             few_modes: plain(&["none", "grid:2", "adaptive:16", "adaptive:4"]),
+            builds: (3..=5).map(|power| 10_u32.pow(power)).collect(),
             sizes: vec![[40, 40], [80, 80]],
             size: [100, 100],
             small_size: [60, 60],
@@ -94,8 +98,18 @@ impl Plan {
         let objects = self.objects.len() as f64 * pixels(self.small_size) * few;
         let sizes: f64 = self.sizes.iter().map(|size| pixels(*size) * few).sum();
         let depths = pixels(self.small_size) * (f64::from(self.reference_rays) + 6.0 * 9.0);
-        scenes + objects + sizes + depths
+        let presets = repeats * Preset::ALL.len() as f64;
+        let builds = self.builds.iter().map(|count| {
+            pixels(self.small_size) * f64::from(self.reference_rays)
+                + presets * build_work(*count as usize, self.small_size)
+        });
+        scenes + objects + sizes + depths + builds.sum::<f64>()
     }
+}
+
+/// The work of a tree over so many primitives, each as a ray, and of a picture through it.
+pub(super) fn build_work(primitives: usize, size: [u32; 2]) -> f64 {
+    primitives as f64 + pixels(size)
 }
 
 pub(super) fn pixels([width, height]: [u32; 2]) -> f64 {

@@ -7,15 +7,16 @@ use super::{Row, Study, Trade, charts::Chart, svg::escaped};
 /// The rows as comma-separated values, a line each, under a line of names.
 pub fn csv(rows: &[Row]) -> String {
     let mut text =
-        "trade,scene,primitives,width,height,depth,mode,seconds,rays,rays_per_pixel,measured_rmse,\
+        "trade,scene,primitives,width,height,depth,mode,build,build_seconds,seconds,rays,rays_per_pixel,measured_rmse,\
                     estimated_rmse,worst,relative_seconds,relative_rays\n"
             .to_owned();
     for row in rows {
-        let Row { primitives, width, height, depth, seconds, rays, worst, .. } = row;
+        let Row { primitives, width, height, depth, build, build_seconds, .. } = row;
+        let Row { seconds, rays, worst, .. } = row;
         // Writing to a string does not fail. Modes hold commas.
         let _ = writeln!(
             text,
-            "{},\"{}\",{primitives},{width},{height},{depth},\"{}\",{seconds:.6},{rays},{:.4},{:.5},{:.5},{worst:.2},\
+            "{},\"{}\",{primitives},{width},{height},{depth},\"{}\",{build},{build_seconds:.6},{seconds:.6},{rays},{:.4},{:.5},{:.5},{worst:.2},\
              {:.4},{:.4}",
             trade(row.trade),
             row.scene.replace('"', "\"\""),
@@ -51,37 +52,56 @@ pub fn markdown(rows: &[Row]) -> String {
         (Trade::Objects, "Cost by objects"),
         (Trade::Depth, "Error by depth of recursion"),
         (Trade::Size, "Cost by size"),
+        (Trade::Build, "Time by the build of the tree"),
     ] {
         let rows: Vec<&Row> = rows.iter().filter(|row| row.trade == kind).collect();
         if rows.is_empty() {
             continue;
         }
-        let _ = write!(
-            text,
-            "\n## {heading}\n\n| scene | size | depth | mode | seconds | x none | rays x none | rays/pixel | error | estimate | \
-             est./error | worst |\n| --- | --- | ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n"
-        );
-        for row in rows {
-            let _ = writeln!(
-                text,
-                "| {} | {}x{} | {} | {} | {:.4} | {:.2} | {:.2} | {:.2} | {:.3} | {:.3} | {:.2} | {:.0} |",
-                row.scene,
-                row.width,
-                row.height,
-                row.depth,
-                row.mode,
-                row.seconds,
-                row.relative_seconds,
-                row.relative_rays,
-                row.rays_per_pixel,
-                row.measured_rmse,
-                row.estimated_rmse,
-                row.estimated_rmse / row.measured_rmse,
-                row.worst,
-            );
-        }
+        let _ = write!(text, "\n## {heading}\n\n");
+        let add = if kind == Trade::Build { add_builds } else { add_errors };
+        add(&mut text, &rows);
     }
     text
+}
+
+/// Adds a table of errors and what they cost.
+fn add_errors(text: &mut String, rows: &[&Row]) {
+    *text += "| scene | size | depth | mode | seconds | x none | rays x none | rays/pixel | error | estimate | est./error | worst |\n\
+              | --- | --- | ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
+    for row in rows {
+        let _ = writeln!(
+            text,
+            "| {} | {}x{} | {} | {} | {:.4} | {:.2} | {:.2} | {:.2} | {:.3} | {:.3} | {:.2} | {:.0} |",
+            row.scene,
+            row.width,
+            row.height,
+            row.depth,
+            row.mode,
+            row.seconds,
+            row.relative_seconds,
+            row.relative_rays,
+            row.rays_per_pixel,
+            row.measured_rmse,
+            row.estimated_rmse,
+            row.estimated_rmse / row.measured_rmse,
+            row.worst,
+        );
+    }
+}
+
+/// Adds a table of builds and of the pictures through what was built.
+fn add_builds(text: &mut String, rows: &[&Row]) {
+    *text += "| scene | size | mode | build | build seconds | picture seconds | picture x auto |\n\
+              | --- | --- | --- | --- | ---: | ---: | ---: |\n";
+    for row in rows {
+        let Row { scene, width, height, mode, build, build_seconds, .. } = row;
+        let Row { seconds, relative_seconds, .. } = row;
+        let _ = writeln!(
+            text,
+            "| {scene} | {width}x{height} | {mode} | {build} | {build_seconds:.4} | {seconds:.4} | {relative_seconds:.2} |",
+        );
+    }
 }
 
 /// A page of the plots, the scenes' pictures and maps, and the tables; files are beside it under the names given.
@@ -136,6 +156,7 @@ fn trade(trade: Trade) -> &'static str {
         Trade::Objects => "objects",
         Trade::Depth => "depth",
         Trade::Size => "size",
+        Trade::Build => "build",
     }
 }
 
@@ -175,6 +196,8 @@ mod tests {
             height: 3,
             depth: 6,
             mode: mode.to_owned(),
+            build: "auto".to_owned(),
+            build_seconds: 0.125,
             seconds: 0.25,
             rays: 1234,
             rays_per_pixel: 4.5,
@@ -189,15 +212,23 @@ mod tests {
     /// Oracle: as many cells in each line as names in the first.
     #[test]
     fn tables_have_a_cell_for_every_name() {
-        let rows = [row("none"), row("adaptive:4,64")];
+        let build = Row { trade: Trade::Build, build: "fast".to_owned(), ..row("none") };
+        let rows = [row("none"), row("adaptive:4,64"), build];
         let text = csv(&rows);
         let lines: Vec<Vec<String>> = text.lines().map(cells).collect();
-        assert_eq!(lines.len(), 3);
-        assert!(lines.iter().all(|line| line.len() == 15), "{text}");
+        assert_eq!(lines.len(), 4);
+        assert!(lines.iter().all(|line| line.len() == 17), "{text}");
+        let columns = |name: &str| lines[0].iter().position(|column| column == name);
+        let cell = |line: usize, name: &str| columns(name).map(|k| lines[line][k].as_str());
+        assert_eq!((cell(3, "build"), cell(3, "build_seconds")), (Some("fast"), Some("0.125000")));
         assert_eq!((lines[2][6].as_str(), lines[2][1].as_str()), ("adaptive:4,64", "spheres:10"));
         let text = markdown(&rows);
         assert!(
             text.contains("| spheres:10 | 4x3 | 6 | adaptive:4,64 | 0.2500 | 1.50 |"),
+            "{text}"
+        );
+        assert!(
+            text.contains("| spheres:10 | 4x3 | none | fast | 0.1250 | 0.2500 | 1.50 |"),
             "{text}"
         );
         let study = Study { rows: rows.to_vec(), portraits: Vec::new() };

@@ -3,8 +3,9 @@
 use std::num::NonZeroUsize;
 
 use whitted::{
+    accel::Preset,
     render::RenderOptions,
-    scene::{Scene, builtin::builtin, load_builtin},
+    scene::{Scene, builtin::builtin, load_builtin, load_builtin_of},
 };
 
 use super::support::rendering;
@@ -27,6 +28,23 @@ fn any_number_of_threads_gives_the_same_bytes() {
             "{threads} threads"
         );
         assert_eq!(one.rays, many.rays, "{threads} threads");
+    }
+}
+
+/// However long the tree's build may take, it never changes an answer.
+#[test]
+fn any_build_of_the_tree_gives_the_same_bytes() {
+    let [fast, auto, thorough] = Preset::ALL.map(|preset| {
+        let scene = load_builtin_of("spheres", Some(3_000)).expect("a built-in scene");
+        let scene = scene.rebuilt(preset);
+        let options = RenderOptions { size: Some([150, 150]), ..Default::default() };
+        let rendering = rendering(&scene, &options);
+        let pixels = rendering.film.pixels().iter().map(|p| p.to_array().map(f32::to_bits));
+        (scene.bvh_stats().nodes, pixels.collect::<Vec<_>>(), rendering.rays)
+    });
+    assert!(fast.0 != auto.0 && auto.0 != thorough.0, "the trees are the same");
+    for (other, name) in [(fast, "fast"), (thorough, "thorough")] {
+        assert!((&other.1, other.2) == (&auto.1, auto.2), "{name}");
     }
 }
 

@@ -1,6 +1,7 @@
 //! A study of a few pixels: every trade has its rows, tables and plots, and converged pictures are kept.
 
 use whitted::{
+    accel::Preset,
     scene::{load_builtin, load_builtin_of},
     study::{Plan, Trade, charts, report, run},
 };
@@ -11,6 +12,7 @@ fn a_small_study_is_complete() {
     let plan = Plan {
         scenes: vec!["assignment".to_owned()],
         objects: vec![1, 20],
+        builds: vec![20, 3_000],
         sizes: vec![[8, 8]],
         size: [16, 16],
         small_size: [12, 12],
@@ -30,13 +32,22 @@ fn a_small_study_is_complete() {
     .expect("a study");
     assert!(steps.get() > 30);
     let count = |trade| study.rows.iter().filter(|row| row.trade == trade).count();
-    let trades = [Trade::Accuracy, Trade::Objects, Trade::Size, Trade::Depth];
+    let trades = [Trade::Accuracy, Trade::Objects, Trade::Size, Trade::Depth, Trade::Build];
     let (modes, few) = (plan.modes.len(), plan.few_modes.len());
-    assert_eq!(trades.map(count), [modes, 2 * few, few, 6]);
+    assert_eq!(trades.map(count), [modes, 2 * few, few, 6, 2 * Preset::ALL.len()]);
     assert!(study.rows.iter().all(|row| row.seconds > 0.0 && row.measured_rmse.is_finite()));
+    let builds: Vec<_> = study.rows.iter().filter(|row| row.trade == Trade::Build).collect();
+    assert!(builds.iter().all(|row| row.build_seconds > 0.0));
+    for builds in builds.chunks(Preset::ALL.len()) {
+        let presets: Vec<&str> = builds.iter().map(|row| row.build.as_str()).collect();
+        assert_eq!(presets, ["fast", "auto", "thorough"]);
+        assert_eq!(builds[1].relative_seconds, 1.0);
+        let picture = |k: usize| (builds[k].measured_rmse, builds[k].rays);
+        assert!(picture(0) == picture(1) && picture(1) == picture(2), "{builds:?}");
+    }
     let names: Vec<String> =
         charts::charts(&study.rows).into_iter().map(|chart| chart.name).collect();
-    assert_eq!(names, ["error-assignment", "estimate", "objects", "depth"]);
+    assert_eq!(names, ["error-assignment", "estimate", "objects", "depth", "build"]);
     for chart in charts::charts(&study.rows) {
         let (svg, pixels) = (chart.svg(), chart.pixels());
         assert!(

@@ -32,8 +32,7 @@ pub(super) fn readable(text: &str) -> (Cow<'_, str>, Vec<Found>) {
 /// The text without the line of an error, or the table that it begins, and the error; if more than so many keys can be read then, or
 /// those of the table would be taken for others.
 fn without_line(text: &str, error: &Error, keys_before: usize) -> Option<(String, Found)> {
-    let at = text.floor_char_boundary(error.span()?.start);
-    let start = text[..at].rfind('\n').map_or(0, |at| at + 1);
+    let start = text.get(..error.span()?.start)?.rfind('\n').map_or(0, |at| at + 1);
     let line = text[start..].lines().next()?;
     // Lists have commas.
     let is_header = line.trim_start().starts_with('[') && !line.contains(',');

@@ -19,7 +19,7 @@ mod parts;
 mod report;
 mod statement;
 mod vertices;
-mod weld;
+pub(super) mod weld;
 
 use std::path::Path;
 

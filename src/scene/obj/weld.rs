@@ -13,7 +13,7 @@ pub(super) fn mix(x: u64) -> u64 {
 }
 
 /// For every position, the first that has the same coordinates.
-pub(super) fn weld(positions: &[DVec3]) -> Vec<u32> {
+pub(in crate::scene) fn weld(positions: &[DVec3]) -> Vec<u32> {
     let mut table = vec![EMPTY; (positions.len() * 2).next_power_of_two().max(4)];
     let mask = table.len() - 1;
     let mut first = Vec::with_capacity(positions.len());

@@ -3,6 +3,7 @@
 mod functions;
 mod goals;
 mod scenes;
+mod specks;
 
 use glam::DVec2;
 use whitted::{

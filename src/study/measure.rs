@@ -1,0 +1,259 @@
+//! The measuring.
+
+use std::{mem::take, path::Path};
+
+use super::{
+    Mode, Plan, Portrait, Row, Step, Study, StudyError, Trade, plan, reference::Reference,
+};
+use crate::{
+    aa::{AntiAliasing, levels::levels},
+    accel::Preset,
+    render::{Rendering, render},
+    scene::{Scene, SceneError},
+};
+
+/// Measures all that `plan` asks for; `load` finds scenes by their names and `folder` keeps converged pictures for the next
+/// time.
+///
+/// # Errors
+/// A scene cannot be loaded, a render fails, or a converged picture cannot be written.
+pub fn run(
+    plan: &Plan,
+    load: &dyn Fn(&str) -> Result<Scene, SceneError>,
+    folder: &Path,
+    progress: &dyn Fn(&Step),
+) -> Result<Study, StudyError> {
+    let mut run =
+        Run { plan, folder, progress, done: 0.0, total: plan.work(), study: Study::default() };
+    for name in &plan.scenes {
+        let scene = load(name)?;
+        let setting = Setting { trade: Trade::Accuracy, name, scene: &scene, size: plan.size };
+        let reference = run.compare(&setting, &plan.modes)?;
+        run.portray(&setting, &reference)?;
+    }
+    for objects in &plan.objects {
+        let name = format!("spheres:{objects}");
+        let scene = load(&name)?;
+        let setting =
+            Setting { trade: Trade::Objects, name: &name, scene: &scene, size: plan.small_size };
+        run.compare(&setting, &plan.few_modes)?;
+    }
+    for objects in &plan.builds {
+        let name = format!("spheres:{objects}");
+        run.builds(&name, load(&name)?)?;
+    }
+    let scene = load(&plan.depth_scene)?;
+    for size in &plan.sizes {
+        let setting =
+            Setting { trade: Trade::Size, name: &plan.depth_scene, scene: &scene, size: *size };
+        run.compare(&setting, &plan.few_modes)?;
+    }
+    run.depths(&scene)?;
+    Ok(run.study)
+}
+
+/// What is rendered in several modes.
+struct Setting<'a> {
+    trade: Trade,
+    name: &'a str,
+    scene: &'a Scene,
+    size: [u32; 2],
+}
+
+struct Run<'a> {
+    plan: &'a Plan,
+    folder: &'a Path,
+    progress: &'a dyn Fn(&Step),
+    done: f64,
+    total: f64,
+    study: Study,
+}
+
+impl Run<'_> {
+    fn step(&mut self, what: String, work: f64) {
+        (self.progress)(&Step { what, done: self.done, total: self.total });
+        self.done += work;
+    }
+
+    fn reference(&mut self, setting: &Setting) -> Result<Reference, StudyError> {
+        let [width, height] = setting.size;
+        let rays = self.plan.reference_rays;
+        let work = plan::pixels(setting.size) * f64::from(rays);
+        self.step(format!("{} {width}x{height}: {rays} rays per pixel", setting.name), work);
+        Reference::of(
+            setting.scene,
+            setting.name,
+            setting.size,
+            rays,
+            self.plan.threads,
+            self.folder,
+        )
+    }
+
+    /// Renders in all modes by turns, so that a busy moment of the machine does not fall on one of them alone.
+    fn compare(&mut self, setting: &Setting, modes: &[Mode]) -> Result<Reference, StudyError> {
+        let reference = self.reference(setting)?;
+        let mut renderings: Vec<Option<Rendering>> = vec![None; modes.len()];
+        let mut seconds = vec![Vec::new(); modes.len()];
+        let depth = setting.scene.depth();
+        for repeat in 0..self.plan.repeats {
+            for (k, mode) in modes.iter().enumerate() {
+                let what = format!(
+                    "{}: {}, {} of {}",
+                    setting.name,
+                    mode.name(),
+                    repeat + 1,
+                    self.plan.repeats
+                );
+                self.step(what, mode.weight() * plan::pixels(setting.size));
+                let options = mode.options(setting.size, depth, self.plan.threads);
+                let rendering = render(setting.scene, &options, &|_| ())?;
+                seconds[k].push(rendering.seconds);
+                renderings[k] = Some(rendering);
+            }
+        }
+        let first = self.study.rows.len();
+        for ((mode, rendering), times) in modes.iter().zip(&renderings).zip(seconds) {
+            if let Some(rendering) = rendering {
+                let row = row(setting, mode.name(), rendering, median(times), &reference);
+                self.study.rows.push(row);
+            }
+        }
+        relate(&mut self.study.rows[first..]);
+        Ok(reference)
+    }
+
+    fn portray(&mut self, setting: &Setting, reference: &Reference) -> Result<(), StudyError> {
+        let mode = Mode::Plain(AntiAliasing::default());
+        let options = mode.options(setting.size, setting.scene.depth(), self.plan.threads);
+        let film = render(setting.scene, &options, &|_| ())?.film;
+        let errors = film
+            .pixels()
+            .iter()
+            .zip(reference.pixels())
+            .map(|(a, b)| ((levels(*a) - levels(*b)).length_squared() / 3.0).sqrt())
+            .collect();
+        self.study.portraits.push(Portrait { scene: setting.name.to_owned(), film, errors });
+        Ok(())
+    }
+
+    /// What is lost and saved by a lower limit of the recursion, against the picture with the scene's own.
+    fn depths(&mut self, scene: &Scene) -> Result<(), StudyError> {
+        let name = self.plan.depth_scene.clone();
+        let setting =
+            Setting { trade: Trade::Depth, name: &name, scene, size: self.plan.small_size };
+        let reference = self.reference(&setting)?;
+        let mode = Mode::Plain(AntiAliasing::Adaptive { error: 1.0, most: 64 });
+        for depth in 1..=scene.depth() {
+            self.step(format!("{name}: depth {depth}"), mode.weight() * plan::pixels(setting.size));
+            let options = mode.options(setting.size, depth, self.plan.threads);
+            let mut times = Vec::new();
+            let mut last = render(scene, &options, &|_| ())?;
+            times.push(last.seconds);
+            for _ in 1..self.plan.repeats {
+                last = render(scene, &options, &|_| ())?;
+                times.push(last.seconds);
+            }
+            let row = row(&setting, mode.name(), &last, median(times), &reference);
+            self.study.rows.push(row);
+        }
+        Ok(())
+    }
+
+    /// What more or less time for the build of the tree gives back in that of the picture, by turns.
+    fn builds(&mut self, name: &str, mut scene: Scene) -> Result<(), StudyError> {
+        let (size, repeats) = (self.plan.small_size, self.plan.repeats);
+        let reference =
+            self.reference(&Setting { trade: Trade::Build, name, scene: &scene, size })?;
+        let mode = Mode::Plain(AntiAliasing::None);
+        let options = mode.options(size, scene.depth(), self.plan.threads);
+        let mut times = vec![(Vec::new(), Vec::new()); Preset::ALL.len()];
+        let first = self.study.rows.len();
+        for repeat in 1..=repeats {
+            for (preset, (building, seconds)) in Preset::ALL.into_iter().zip(&mut times) {
+                let what = format!("{name}: {preset} build, {repeat} of {repeats}");
+                self.step(what, plan::build_work(scene.primitive_count(), size));
+                scene = scene.rebuilt(preset);
+                let rendering = render(&scene, &options, &|_| ())?;
+                building.push(scene.bvh_stats().build_seconds);
+                seconds.push(rendering.seconds);
+                if repeat < repeats {
+                    continue;
+                }
+                let setting = Setting { trade: Trade::Build, name, scene: &scene, size };
+                let (build, build_seconds) = (preset.to_string(), median(take(building)));
+                let row = row(&setting, mode.name(), &rendering, median(take(seconds)), &reference);
+                self.study.rows.push(Row { build, build_seconds, ..row });
+            }
+        }
+        relate(&mut self.study.rows[first..]);
+        Ok(())
+    }
+}
+
+fn row(
+    setting: &Setting,
+    mode: String,
+    rendering: &Rendering,
+    seconds: f64,
+    reference: &Reference,
+) -> Row {
+    let film = &rendering.film;
+    let (measured_rmse, worst) = reference.error_of(film);
+    let rays = rendering.rays;
+    let pixels = f64::from(film.width()) * f64::from(film.height());
+    Row {
+        trade: setting.trade,
+        scene: setting.name.to_owned(),
+        primitives: setting.scene.primitive_count(),
+        width: film.width(),
+        height: film.height(),
+        depth: rendering.depth,
+        mode,
+        build: Preset::Auto.to_string(),
+        build_seconds: setting.scene.bvh_stats().build_seconds,
+        seconds,
+        rays: rays.camera + rays.reflected + rays.refracted + rays.transmitted + rays.shadow,
+        rays_per_pixel: rays.camera as f64 / pixels,
+        measured_rmse,
+        estimated_rmse: rendering.estimated_rmse,
+        worst,
+        relative_seconds: 1.0,
+        relative_rays: 1.0,
+    }
+}
+
+/// Times and rays as multiples of those of the mode `none`, if it is among the rows; of several, that with the usual tree.
+fn relate(rows: &mut [Row]) {
+    let usual = Preset::Auto.to_string();
+    let is_base = |row: &&Row| row.mode == "none" && row.build == usual;
+    let Some((seconds, rays)) = rows.iter().find(is_base).map(|row| (row.seconds, row.rays)) else {
+        return;
+    };
+    for row in rows {
+        row.relative_seconds = row.seconds / seconds;
+        row.relative_rays = row.rays as f64 / rays as f64;
+    }
+}
+
+/// The middle one of some numbers, or the mean of the middle two.
+fn median(mut numbers: Vec<f64>) -> f64 {
+    numbers.sort_unstable_by(f64::total_cmp);
+    let middle = numbers.len() / 2;
+    match numbers.len() {
+        0 => f64::NAN,
+        n if n % 2 == 1 => numbers[middle],
+        _ => f64::midpoint(numbers[middle - 1], numbers[middle]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn medians_are_in_the_middle() {
+        assert_eq!(median(vec![3.0, 1.0, 9.0]), 3.0);
+        assert_eq!(median(vec![3.0, 1.0, 9.0, 5.0]), 4.0);
+    }
+}
