@@ -147,14 +147,14 @@ fn a_part_is_that_of_the_whole() {
 }
 
 /// White things on black; a pixel is 20/72 = 0.278 wide at z = 0.
-const DARK: &str = r#"
+const DARK: &str = r"
     resolution = [72, 72]
     depth = 1
     background = [0, 0, 0]
     camera = { eye = [0, 0, 10], look_at = [0, 0, 0], up = [0, 1, 0], vertical_fov = 90 }
     light = []
     material.white = { ambient = 1 }
-"#;
+";
 
 /// Cylinders a twentieth of a pixel wide and spheres smaller than a pixel, bright on black: the rays of `adaptive` meet them in
 /// every pixel that they cross for two thirds of a side or more, and look into every pixel that they touch; samples alone find
