@@ -94,6 +94,16 @@ pub(super) struct Walk<'t, 'a> {
 }
 
 impl Walk<'_, '_> {
+    /// Finds what is wrong with each entry by itself; `what` is the word for its name.
+    fn entries(&self, table: &DeTable, keys: &[Key], what: &str, found: &mut Vec<Found>) {
+        for (name, value) in table {
+            match keys.iter().find(|key| key.name == name.get_ref()) {
+                Some(key) => self.value(value, key.kind, key.name, found),
+                None => found.push((name.span(), unknown(what, name.get_ref(), keys))),
+            }
+        }
+    }
+
     fn table(
         &self,
         table: &DeTable,
@@ -102,12 +112,7 @@ impl Walk<'_, '_> {
         of: &str,
         found: &mut Vec<Found>,
     ) {
-        for (name, value) in table {
-            match keys.iter().find(|key| key.name == name.get_ref()) {
-                Some(key) => self.value(value, key.kind, key.name, found),
-                None => found.push((name.span(), unknown("key", name.get_ref(), keys))),
-            }
-        }
+        self.entries(table, keys, "key", found);
         for key in keys.iter().filter(|key| key.required && self.is_whole) {
             if find(table, key.name).is_none() {
                 found.push((at.clone(), format!("{of} has no `{}`: {}", key.name, key.about)));
@@ -123,12 +128,7 @@ impl Walk<'_, '_> {
         of: &str,
         found: &mut Vec<Found>,
     ) {
-        for (name, value) in table {
-            match keys.iter().find(|key| key.name == name.get_ref()) {
-                Some(key) => self.value(value, key.kind, key.name, found),
-                None => found.push((name.span(), unknown("kind", name.get_ref(), keys))),
-            }
-        }
+        self.entries(table, keys, "kind", found);
         if table.len() != 1 {
             let known = listed(keys.iter().map(|key| key.name));
             found.push((at, format!("`{of}` must be exactly one of {known}")));
