@@ -1,6 +1,6 @@
 //! What no geometry tells: specks seen in a mirror are found by chance.
 
-use std::f64::consts::PI;
+use std::{f64::consts::PI, fmt::Write};
 
 use whitted::{film::Film, render::RenderOptions, scene::Scene};
 
@@ -28,14 +28,12 @@ fn specks(radius: f64) -> Scene {
         let within = 2.0 + 4.0 * f64::from(random >> 8) / f64::from(1 << 24);
         (f64::from(square * SQUARE) + within - f64::from(SIDE) / 2.0) * pixel
     };
-    let squares = (0..SPECKS).map(|k| (k % (SIDE / SQUARE), k / (SIDE / SQUARE)));
-    let spheres: String = squares
-        .map(|(column, row)| {
-            let (x, y, radius) = (place(column), place(row), radius * pixel);
-            let shape = format!("{{ center = [{x}, {y}, {BEHIND}], radius = {radius} }}");
-            format!("{{ material = \"white\", shape.sphere = {shape} }},\n")
-        })
-        .collect();
+    let mut spheres = String::new();
+    for square in 0..SPECKS {
+        let (x, y) = (place(square % (SIDE / SQUARE)), place(square / (SIDE / SQUARE)));
+        let shape = format!("{{ center = [{x}, {y}, {BEHIND}], radius = {} }}", radius * pixel);
+        let _ = writeln!(spheres, "{{ material = \"white\", shape.sphere = {shape} }},");
+    }
     let fov = 2.0 * SLOPE.atan().to_degrees();
     support::scene(&format!(
         r#"
