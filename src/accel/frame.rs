@@ -20,14 +20,14 @@ const BOX_PAD: f64 = 1.0 / (1 << 19) as f64;
 const BALL_RADIUS: f64 = 1.75;
 
 /// How much later than computed an end may be, in the parameter of the tree's frame, for a ray that walked here.
-pub(super) const ARRIVAL_SLACK: f64 = 1.0 / (1 << 20) as f64;
+const ARRIVAL_SLACK: f64 = 1.0 / (1 << 20) as f64;
 
 /// Beyond this distance (in the tree's frame, squared) a ray walks to the ball first.
-pub(super) const NEAR_SQUARED: f64 = 4.0;
+const NEAR_SQUARED: f64 = 4.0;
 
 /// Beyond this distance (in the tree's frame, squared) the rounding of "origin − centre" in double precision, which
 /// every primitive does for itself, is no longer small against the pads.
-pub(super) const FAR_SQUARED: f64 = ((1_u64 << 28) * (1_u64 << 28)) as f64;
+const FAR_SQUARED: f64 = ((1_u64 << 28) * (1_u64 << 28)) as f64;
 
 /// The change from world coordinates to those of the tree.
 #[derive(Clone, Copy, Debug)]
@@ -95,11 +95,6 @@ impl Frame {
         (p - self.center) * self.scale
     }
 
-    /// A vector in this frame.
-    pub(super) fn vector(&self, v: DVec3) -> DVec3 {
-        v * self.scale
-    }
-
     /// By how much the boxes are enlarged.
     pub(super) fn pad(&self) -> f64 {
         self.pad
@@ -130,24 +125,6 @@ impl Frame {
         Entry::Ray(TreeRay::new(origin, dir, rate, arrival, slack))
     }
 
-    /// The ray in this frame, without a branch, for loops over lanes: if it need not walk here first, and otherwise only as far as
-    /// its direction; and the square of its start's distance from the centre, NaN if the direction is [extreme](Entry::Extreme).
-    #[inline(always)]
-    pub(super) fn beside(&self, origin: DVec3, dir: DVec3) -> (TreeRay, f64) {
-        let (dir, rate, fits) = self.shrunk(dir);
-        let origin = self.point(origin);
-        let distance_squared = if fits { origin.length_squared() } else { f64::NAN };
-        (TreeRay::new(origin, dir, rate, 0.0, 0.0), distance_squared)
-    }
-
-    /// The ray from afar in this frame, and whether it arrives; without a branch.
-    #[inline(always)]
-    pub(super) fn brought(&self, origin: DVec3, dir: DVec3) -> (TreeRay, bool) {
-        let (dir, rate, _) = self.shrunk(dir);
-        let (point, t, arrives) = arrival(self.point(origin), dir);
-        (TreeRay::new(point, dir, rate, t, ARRIVAL_SLACK), arrives)
-    }
-
     /// The direction scaled so that its largest component is in [1, 2], the rate of the parameters, and whether both are
     /// ordinary numbers: directions that are zero, subnormal or not finite go elsewhere.
     #[inline(always)]
@@ -173,19 +150,12 @@ impl Frame {
 /// "Precision Improvements for Ray/Sphere Intersection", *Ray Tracing Gems* (2019), ch. 7.
 #[inline(always)]
 fn arrive(origin: DVec3, dir: DVec3) -> Option<(DVec3, f64)> {
-    let (point, t, arrives) = arrival(origin, dir);
-    arrives.then_some((point, t))
-}
-
-/// As [`arrive`], without a branch; point and parameter mean nothing if the third is false.
-#[inline(always)]
-fn arrival(origin: DVec3, dir: DVec3) -> (DVec3, f64, bool) {
     let a = dir.length_squared();
     let foot = cross(dir, cross(origin, dir)) / a;
     let chord = BALL_RADIUS * BALL_RADIUS - foot.length_squared();
     let b = origin.dot(dir);
     let half = (chord / a).sqrt();
-    (foot - dir * half, -b / a - half, (chord >= 0.0) & (b < 0.0))
+    (chord >= 0.0 && b < 0.0).then(|| (foot - dir * half, -b / a - half))
 }
 
 impl TreeRay {

@@ -16,7 +16,7 @@ use super::{
     simd::{Lanes, Simd},
 };
 
-/// What a leaf's primitives are to a ray: a bit for each.
+/// What a leaf's primitives are to a ray, or a primitive to eight rays: a bit for each.
 pub(super) struct Candidates {
     /// Those that may be hit before the limit.
     pub(super) maybe: u32,
@@ -28,7 +28,8 @@ pub(super) struct Candidates {
 }
 
 impl Candidates {
-    const NONE: Self = Self { maybe: 0, certain: 0, from: Lanes([0.0; 8]), to: Lanes([0.0; 8]) };
+    pub(super) const NONE: Self =
+        Self { maybe: 0, certain: 0, from: Lanes([0.0; 8]), to: Lanes([0.0; 8]) };
 }
 
 /// A ray made ready for the tests of leaves.
@@ -42,6 +43,8 @@ pub(super) struct LeafRay {
     pub(super) length: f32,
     /// The end of the ray, rounded down.
     pub(super) end: f32,
+    /// How far it may have to go, and how far from its origin corners may be.
+    pub(super) reach: f32,
     /// The ray itself.
     #[cfg(feature = "leaf-study")]
     pub(super) ray: TreeRay,
@@ -57,6 +60,7 @@ impl LeafRay {
             inverse: 1.0 / square,
             length: square.sqrt(),
             end: ray.end_below(end),
+            reach: 4.0,
             #[cfg(feature = "leaf-study")]
             ray: *ray,
         }
@@ -103,8 +107,8 @@ impl Spheres {
             let (center, radius) = sphere(place);
             [center.x as f32, center.y as f32, center.z as f32, radius as f32]
         });
-        // The perpendicular from the centre to the ray is off by up to 27 u across and 28 u along the ray, what is made of the
-        // radius by 4 u: less than 2 pads.
+        // The perpendicular from the centre to the ray is off by up to 27 u across and 28 u along the ray, for one of a packet, which
+        // begins further away, by 20 u and 41 u; what is made of the radius by 4 u: less than 2 pads.
         Self { rows, margin: above(2.0 * pad) }
     }
 
@@ -208,10 +212,10 @@ impl Triangles {
         let rest = simd.add(simd.sub(den, v), minus_w);
         let inside = simd.min(simd.min(v, simd.sub(zero, minus_w)), rest);
         let area = simd.mul(size, size);
-        let error = simd.mul(size, simd.splat(128.0 * U * ray.length));
-        // A ray in the frame is at most 4 long, however far its end is.
-        let t_error = simd.mul(area, simd.splat(256.0 * U));
-        let reach = simd.mul_add(den, simd.splat(limit.min(4.0)), t_error);
+        let error = simd.mul(size, simd.splat(32.0 * U * ray.reach * ray.length));
+        // A ray in the frame has only so far to go, wherever its end is.
+        let t_error = simd.mul(area, simd.splat(64.0 * U * ray.reach));
+        let reach = simd.mul_add(den, simd.splat(limit.min(ray.reach)), t_error);
         let maybe = leaf.all()
             & simd.le(simd.sub(zero, error), inside)
             & simd.le(simd.sub(zero, t_error), scaled_t)
@@ -219,7 +223,7 @@ impl Triangles {
         if maybe == 0 {
             return Candidates::NONE;
         }
-        let t_error = simd.mul(area, simd.splat(64.0 * U));
+        let t_error = simd.mul(area, simd.splat(16.0 * U * ray.reach));
         let den_error = simd.mul(area, simd.splat(16.0 * U * ray.length));
         let from = simd.div(simd.sub(scaled_t, t_error), simd.add(den, den_error));
         let to = simd.div(simd.add(scaled_t, t_error), simd.sub(den, den_error));

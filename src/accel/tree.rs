@@ -96,6 +96,12 @@ impl Tree {
         }
     }
 
+    /// Whether there are leaves of triangles.
+    #[inline(always)]
+    pub(super) fn has_triangles(&self) -> bool {
+        !self.corners.is_empty()
+    }
+
     /// The corners of the primitive in `place`, if it is a triangle.
     #[inline(always)]
     pub(super) fn corners(&self, place: u32) -> Option<&[DVec3; 3]> {

@@ -98,7 +98,7 @@ impl Outline {
 /// Where a line meets the plane through `vertex` square to `normal`; NaN if it is in it: a closed surface has other faces to be
 /// hit there.
 #[inline(always)]
-fn parameter(vertex: DVec3, normal: DVec3, origin: DVec3, dir: DVec3) -> f64 {
+pub(super) fn parameter(vertex: DVec3, normal: DVec3, origin: DVec3, dir: DVec3) -> f64 {
     let t = dot(normal, vertex - origin) / dot(normal, dir);
     if t.is_finite() { t } else { f64::NAN }
 }

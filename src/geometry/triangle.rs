@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::{
     Bounds, Similarity, flat,
     hit::{Crossing, Crossings, Surface},
-    lanes::{Column, LANES, RayLanes},
+    lanes::{Column, LANES, RayLanes, Vectors},
     ray::Ray,
     shape::ShapeError,
 };
@@ -70,6 +70,30 @@ pub(crate) fn crossing(corners: &[DVec3; 3], ray: &Ray) -> Crossing {
 #[inline(always)]
 pub(crate) fn certain_crossing(corners: &[DVec3; 3], ray: &Ray) -> Crossing {
     flat::plane_crossing(corners[0], doubled_area(corners), ray)
+}
+
+/// Triangles side by side that are known to be crossed by the rays in their lanes.
+pub(crate) struct CertainLanes {
+    vertex: Vectors,
+    area: Vectors,
+}
+
+impl CertainLanes {
+    pub(crate) const NONE: Self = Self { vertex: Vectors::ZERO, area: Vectors::ZERO };
+
+    /// Puts the triangle between `corners` into a lane.
+    #[inline(always)]
+    pub(crate) fn set(&mut self, lane: usize, corners: &[DVec3; 3]) {
+        self.vertex.set(lane, corners[0]);
+        self.area.set(lane, doubled_area(corners));
+    }
+
+    /// The parameter of [`certain_crossing`] in a lane.
+    #[inline(always)]
+    pub(crate) fn parameter(&self, lane: usize, rays: &RayLanes) -> f64 {
+        let (origin, dir) = (rays.origin.get(lane), rays.dir.get(lane));
+        flat::parameter(self.vertex.get(lane), self.area.get(lane), origin, dir)
+    }
 }
 
 /// The same for some `lanes` of rays: the parameters, or NaN, and no second ones.

@@ -4,12 +4,10 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 
-use super::{BLOCKED, FEWEST_LANES, Packet, START_SLACK, Searches, has_lanes};
+use super::{BLOCKED, FEWEST_LANES, Packet, Searches, has_lanes};
 use crate::{
     accel::{
         Accel, crossed,
-        frame::above,
-        leaf::Candidates,
         simd::{Kernel, Simd},
         target::triangle_crossing,
         tree::Tree,
@@ -19,6 +17,12 @@ use crate::{
         lanes::{Column, LANES, RayLanes, hull, lanes},
     },
 };
+
+/// Room for the roundings of a ray's start as its end and direction give it.
+const SLACK: f32 = 1.0 / (1 << 20) as f32;
+
+/// A ray that starts further from the light than this, in the tree's frame, is traced by itself.
+const FURTHEST: f64 = (1 << 26) as f64;
 
 /// The search for what blocks rays that end, at `t = 1`, in one point.
 pub(in crate::accel) struct BlockedPacket<'a, B, V> {
@@ -41,15 +45,10 @@ where
     fn run<S: Simd>(self, simd: S) -> Option<u64> {
         let Self { accel, rays, target, opaque, visit } = self;
         let tree = accel.tree.as_ref()?;
-        let mut packet = Packet::new(tree, rays, target, -1.0, 1.0)?;
-        // Seen from the light, the furthest start of a ray, rounded up with room for the error of either end.
-        let mut end = 0.0_f64;
-        for k in lanes(rays.used) {
-            end = end.max(-packet.beam.along_axis(tree.frame.vector(rays.dir.get(k))));
-        }
-        let end = above(end * (1.0 + 1e-12) - packet.beam.lead).next_up() + START_SLACK;
+        // From the light to where they start, which is as far as they go in one unit.
+        let mut packet = Packet::new(tree, rays, target, -1.0, (1.0, SLACK), FURTHEST)?;
         let crossed = [[f64::NAN; LANES]; 2];
-        let mut blocks = Blocks { accel, tree, rays, opaque, visit, crossed, end };
+        let mut blocks = Blocks { accel, tree, rays, opaque, visit, crossed };
         for place in accel.outside() {
             blocks.test(simd, &mut packet, place, rays.used);
         }
@@ -67,7 +66,6 @@ struct Blocks<'a, B, V> {
     visit: &'a mut V,
     /// Where the lanes cross the primitive that is tried.
     crossed: [Column; 2],
-    end: f32,
 }
 
 /// A visit that knows its lane.
@@ -159,39 +157,30 @@ where
         simd: S,
         packet: &mut Packet,
         k: usize,
-        first: u32,
-        candidates: &Candidates,
+        place: u32,
+        certain: Option<[f32; 2]>,
     ) {
-        // A certain hit of an opaque one blocks it without further ado.
-        let Candidates { mut maybe, certain, .. } = *candidates;
+        let number = self.accel.numbers[place as usize];
         let left = self.rays.from.map_or(u32::MAX, |from| from.hits.primitive[k]);
-        while maybe != 0 && packet.limit[k] >= 0.0 {
-            let lane = maybe.trailing_zeros() & 7;
-            maybe &= maybe - 1;
-            let place = first + lane;
-            let number = self.accel.numbers[place as usize];
-            let certain = certain & 1 << lane != 0;
-            if certain && number != left && (self.opaque)(number) {
-                packet.limit[k] = BLOCKED;
-                continue;
-            }
-            match self.tree.corners(place).filter(|_| has_lanes()) {
-                None => self.test_each(simd, packet, place as usize, 1 << k),
-                // A ray never meets the triangle that it leaves.
-                Some(_) if number == left => {}
-                Some(corners) => {
-                    let ray = self.rays.plain_ray(k);
-                    let crossing = triangle_crossing(simd, corners, &ray, certain);
-                    if self.lane_test(&ray, k).crosses(number, crossing) {
-                        packet.limit[k] = BLOCKED;
-                    }
+        if packet.limit[k] < 0.0 {
+            return;
+        }
+        // A certain hit of an opaque one blocks it without further ado.
+        if certain.is_some() && number != left && (self.opaque)(number) {
+            packet.limit[k] = BLOCKED;
+            return;
+        }
+        match self.tree.corners(place).filter(|_| has_lanes()) {
+            None => self.test_each(simd, packet, place as usize, 1 << k),
+            // A ray never meets the triangle that it leaves.
+            Some(_) if number == left => {}
+            Some(corners) => {
+                let ray = self.rays.plain_ray(k);
+                let crossing = triangle_crossing(simd, corners, &ray, certain.is_some());
+                if self.lane_test(&ray, k).crosses(number, crossing) {
+                    packet.limit[k] = BLOCKED;
                 }
             }
         }
-    }
-
-    #[inline(always)]
-    fn end(&self, packet: &Packet) -> f32 {
-        if packet.is_open() { self.end } else { f32::NEG_INFINITY }
     }
 }

@@ -1,29 +1,35 @@
 //! Up to 64 rays that share a point, traced together.
 //!
-//! The nodes are tested against their [`Beam`], once for all; a leaf's box against the rays, eight at a time. A leaf of one sphere
-//! or flat shape is then tried by all of them in a loop over the lanes, which vectors can do; the primitives of other leaves by
-//! each ray that may meet them. What decides is the shapes' own arithmetic, so the answers are, to the bit, those of single
-//! rays; that a lane tries what it need not have tried makes no difference.
+//! The nodes are tested against their [`Beam`], once for all. Of a leaf of triangles, which are [seen](eye) from the common point,
+//! each is tested against the rays, eight at a time; of other leaves the box is, and a leaf of one sphere or flat shape is then
+//! tried by all of them in a loop over the lanes, which vectors can do, the primitives of others by each ray that may meet them. What
+//! decides is the shapes' own arithmetic, so the answers are, to the bit, those of single rays; that a lane tries what it need
+//! not have tried makes no difference.
 
 mod blocked;
+mod boxes;
+mod eye;
 mod nearest;
 
 use glam::DVec3;
 
+#[cfg(feature = "leaf-study")]
+use super::frame::TreeRay;
 use super::{
-    beam::Beam,
-    frame::{ARRIVAL_SLACK, FAR_SQUARED, NEAR_SQUARED, TreeRay},
+    beam::{Axis, Beam, Singles},
     leaf::{Candidates, LeafRay},
-    node::{Child, Content, Node},
+    node::{Child, Content},
     simd::Simd,
     tree::Tree,
     walk::MAX_DEPTH,
 };
 use crate::geometry::lanes::{Column, LANES, RayLanes, lanes};
 pub(super) use blocked::BlockedPacket;
+use boxes::Prepared;
+use eye::Eye;
 pub(super) use nearest::NearestPacket;
 
-/// Rays whose boxes are tested by one instruction.
+/// Rays that are tested by one instruction.
 const GROUP: usize = 8;
 
 /// Fewer rays than this are as fast one by one.
@@ -31,6 +37,9 @@ const FEWEST: u32 = 8;
 
 /// Fewer lanes than this are as fast one by one where a primitive is tried.
 const FEWEST_LANES: u32 = 3;
+
+/// Fewer rays than this are as fast one by one where the triangles of a leaf are tried.
+const FEWEST_SEEING: u32 = 20;
 
 /// A wider beam, at distance 1 in units of half the scene, meets too much that no ray of it does.
 const WIDEST: f32 = 0.25;
@@ -44,13 +53,11 @@ const ASIDE: f32 = -1.0;
 /// The limit of a lane whose ray is blocked.
 const BLOCKED: f32 = -2.0;
 
-/// Room for the roundings of a ray's start and end along the beam's axis.
-const START_SLACK: f32 = 1.0 / (1 << 20) as f32;
+/// How far corners may be from where a ray begins, which is at most 4 to either side of the tree: twice as far as for a single ray, and
+/// so are the errors.
+const REACH: f32 = 8.0;
 
-/// A number in single precision for each lane.
-type Singles = [f32; LANES];
-
-/// A child to be visited: where the beam enters it, what it is, and its box (node and slot).
+/// A child to be visited: where the beam enters it, what it is, and its box (node and slot), if it has one.
 #[derive(Clone, Copy)]
 struct Visit {
     enter: f32,
@@ -59,22 +66,22 @@ struct Visit {
     slot: u32,
 }
 
-/// The rays of a packet in the tree's frame, and the beam about them.
+/// The node of what has no box: a tree of one leaf.
+const NO_NODE: u32 = u32::MAX;
+
+/// The rays of a packet in the tree's frame, as lines along their axis, and the beam about them.
 struct Packet {
+    axis: Axis,
+    beam: Beam,
+    /// Where the rays begin, and their directions, which go by 1 along the axis.
     origin: [Singles; 3],
     dir: [Singles; 3],
-    inverse: [Singles; 3],
-    /// Lengths of the direction here for each length of the direction in the world.
+    /// How far the rays go along the axis in one unit of their parameter.
     rate: Column,
-    /// The parameter at which a ray from afar arrives, less the room for its error; 0 for others.
-    late: Column,
-    /// Beyond this parameter a ray asks for nothing more; negative for a lane that is done or not in use.
+    /// Beyond this depth a ray asks for nothing more; negative for a lane that is done or not in use.
     limit: Singles,
-    /// The rest of what the tests of leaves need: one over the squared length of the direction, its length, and the end rounded down.
-    inverse_square: Singles,
-    length: Singles,
+    /// The depth of the end, rounded down.
     end: Singles,
-    beam: Beam,
 }
 
 /// What the rays of a packet search for.
@@ -83,132 +90,99 @@ trait Searches<S: Simd> {
     /// `#[inline(always)]`.
     fn test(&mut self, simd: S, packet: &mut Packet, place: usize, met: u64);
 
-    /// Takes the candidates of a leaf, whose primitives start at `first`, for the ray of lane `k`. Must be `#[inline(always)]`.
-    fn take(&mut self, simd: S, packet: &mut Packet, k: usize, first: u32, candidates: &Candidates);
-
-    /// How far along the axis of the beam any ray still searches.
-    fn end(&self, packet: &Packet) -> f32;
+    /// Takes the primitive of a leaf in `place` for the ray of lane `k`, which may meet it, or certainly does, for the first time
+    /// between two depths. Must be `#[inline(always)]`.
+    fn take(
+        &mut self,
+        simd: S,
+        packet: &mut Packet,
+        k: usize,
+        place: u32,
+        certain: Option<[f32; 2]>,
+    );
 }
 
 impl Packet {
     /// The packet of rays that share the point `point`, from where `toward` times their directions lead; `None` if they had better
-    /// be traced one by one. They end at `end`.
+    /// be traced one by one, or go further than `furthest` in one unit of their parameter. They end where that is `end`, give or
+    /// take `slack` in depth.
     #[inline(always)]
-    fn new(tree: &Tree, rays: &RayLanes, point: DVec3, toward: f64, end: f64) -> Option<Self> {
+    fn new(
+        tree: &Tree,
+        rays: &RayLanes,
+        point: DVec3,
+        toward: f64,
+        (end, slack): (f64, f32),
+        furthest: f64,
+    ) -> Option<Self> {
         if rays.used.count_ones() < FEWEST {
             return None;
         }
-        let beam = Beam::around(tree.frame.point(point), rays, toward)?;
+        let first = rays.dir.get(rays.used.trailing_zeros() as usize % LANES) * toward;
+        let axis = Axis::along(tree.frame.point(point), first)?;
+        let [along, right, up] = axis.order.map(|axis| rays.dir.axis(axis));
+        let (zero, none) = ([[0.0; LANES]; 2], [0.0; LANES]);
+        let (mut begin, mut slopes, mut rate) = (zero, zero, [0.0; LANES]);
+        let (mut limit, mut ends) = ([ASIDE; LANES], none);
+        let mut strays = [0_u64; LANES];
+        for k in 0..LANES {
+            let is_used = rays.used >> k & 1 != 0;
+            let dir = [along[k] * toward, right[k] * toward, up[k] * toward];
+            let line = axis.line(&tree.frame, dir);
+            strays[k] = u64::from(is_used & !(line.follows & (line.rate <= furthest)));
+            let depth = line.rate * end - axis.lead;
+            let last = limit_above(depth) + slack;
+            let is_open = is_used & line.arrives & (last >= 0.0);
+            for side in 0..2 {
+                begin[side][k] = if is_open { line.begin[side] as f32 } else { 0.0 };
+                slopes[side][k] = if is_open { line.slopes[side] as f32 } else { 0.0 };
+            }
+            rate[k] = line.rate;
+            limit[k] = if is_open { last } else { ASIDE };
+            ends[k] = limit_below(depth) - slack;
+        }
+        if strays.iter().fold(0, |all, stray| all | stray) != 0 {
+            return None;
+        }
+        let beam = Beam::around(axis, &begin, &slopes, open(&limit));
         if beam.spread() > WIDEST {
             return None;
         }
-        let (zero, none) = ([[0.0; LANES]; 3], [0.0; LANES]);
-        let mut packet = Self {
-            origin: zero,
-            dir: zero,
-            inverse: zero,
-            rate: [0.0; LANES],
-            late: [0.0; LANES],
-            limit: [ASIDE; LANES],
-            inverse_square: none,
-            length: none,
-            end: none,
-            beam,
-        };
-        let mut distances = [0.0; LANES];
-        for k in 0..LANES {
-            let (ray, squared) = tree.frame.beside(rays.origin.get(k), rays.dir.get(k));
-            packet.set(k, &ray);
-            distances[k] = squared;
+        let (mut origin, mut dir) = ([[axis.start; LANES]; 3], [[axis.forward as f32; LANES]; 3]);
+        for side in 0..2 {
+            origin[axis.order[1 + side]] = begin[side];
+            dir[axis.order[1 + side]] = slopes[side];
         }
-        // Not within, rather than beyond: NaN is neither.
-        let not_within = |squared| rays.used & !within(&distances, squared);
-        if not_within(FAR_SQUARED) != 0 {
-            return None;
-        }
-        let (far, mut met) = (not_within(NEAR_SQUARED), rays.used);
-        if far != 0 {
-            met &= packet.bring(tree, rays, far);
-        }
-        for k in 0..LANES {
-            let limit = packet.end_above(k, end);
-            let is_open = (met >> k & 1 != 0) & (limit >= 0.0);
-            packet.limit[k] = if is_open { limit } else { ASIDE };
-            packet.end[k] = packet.end_below(k, end);
-        }
-        Some(packet)
+        Some(Self { axis, beam, origin, dir, rate, limit, end: ends })
     }
 
-    /// Replaces the ray of a lane that starts in the frame.
-    #[inline(always)]
-    fn set(&mut self, k: usize, ray: &TreeRay) {
-        let inverse = ray.inverse();
-        for axis in 0..3 {
-            self.origin[axis][k] = ray.origin[axis];
-            self.dir[axis][k] = ray.dir[axis];
-            self.inverse[axis][k] = inverse[axis];
-        }
-        let square = ray.square();
-        (self.inverse_square[k], self.length[k]) = (1.0 / square, square.sqrt());
-        self.rate[k] = ray.rate;
-    }
-
-    /// Brings the rays of the lanes `far` to the tree, and returns all lanes but those that pass it by.
-    #[inline(always)]
-    fn bring(&mut self, tree: &Tree, rays: &RayLanes, far: u64) -> u64 {
-        let mut passes = [0_u64; LANES];
-        for k in 0..LANES {
-            let is_far = far >> k & 1 != 0;
-            let (ray, arrives) = tree.frame.brought(rays.origin.get(k), rays.dir.get(k));
-            for axis in 0..3 {
-                let x = self.origin[axis][k];
-                self.origin[axis][k] = if is_far { ray.origin[axis] } else { x };
-            }
-            self.late[k] = if is_far { ray.arrival - ray.slack } else { 0.0 };
-            passes[k] = u64::from(is_far & !arrives);
-        }
-        !(0..LANES).fold(0, |all, k| all | passes[k] << k)
-    }
-
-    /// The world's parameter `t` of a lane here, as [`TreeRay::end_above`] but without a branch.
+    /// The depth of the world's parameter `t` of a lane, rounded up, without a branch.
     #[inline(always)]
     fn end_above(&self, k: usize, t: f64) -> f32 {
-        limit_above(t * self.rate[k] - self.late[k])
+        limit_above(t * self.rate[k] - self.axis.lead)
     }
 
-    /// The world's parameter `t` of a lane here, rounded down likewise and with room for the error of the arrival.
+    /// The ray of a lane for the tests of leaves, whose parameter is its depth.
     #[inline(always)]
-    fn end_below(&self, k: usize, t: f64) -> f32 {
-        let late = self.late[k];
-        let slack = if late == 0.0 { 0.0 } else { 2.0 * ARRIVAL_SLACK };
-        limit_below(t * self.rate[k] - late - slack)
-    }
-
-    /// The ray of a lane for the tests of leaves.
-    #[inline(always)]
-    fn leaf_ray(&self, k: usize) -> LeafRay {
-        let (origin, dir) = (self.point(k), self.direction(k));
+    fn leaf_ray(&self, prepared: &Prepared, k: usize) -> LeafRay {
+        let [origin, dir] = [&self.origin, &self.dir].map(|v| v.each_ref().map(|column| column[k]));
         LeafRay {
             origin,
             dir,
-            inverse: self.inverse_square[k],
-            length: self.length[k],
+            inverse: prepared.inverse_square[k],
+            length: prepared.length[k],
             end: self.end[k],
+            reach: REACH,
             #[cfg(feature = "leaf-study")]
-            ray: TreeRay { origin, dir, rate: self.rate[k], arrival: self.late[k], slack: 0.0 },
+            ray: TreeRay { origin, dir, rate: self.rate[k], arrival: self.axis.lead, slack: 0.0 },
         }
     }
 
-    /// Where the ray of a lane starts in the tree's frame, or arrives.
+    /// The slopes of the rays along the two other axes.
     #[inline(always)]
-    fn point(&self, k: usize) -> [f32; 3] {
-        self.origin.each_ref().map(|column| column[k])
-    }
-
-    /// Its direction there.
-    #[inline(always)]
-    fn direction(&self, k: usize) -> [f32; 3] {
-        self.dir.each_ref().map(|column| column[k])
+    fn slopes(&self) -> [&Singles; 2] {
+        let [_, right, up] = self.axis.order;
+        [&self.dir[right], &self.dir[up]]
     }
 
     /// Has `searches` try the primitives of a leaf with the rays of the lanes `met`.
@@ -219,53 +193,62 @@ impl Packet {
         tree: &Tree,
         searches: &mut impl Searches<S>,
         met: u64,
+        prepared: &Prepared,
         leaf: Content,
     ) {
         match leaf {
             Content::Spheres(run) => {
                 for k in lanes(met) {
-                    let (ray, limit) = (self.leaf_ray(k), self.limit[k]);
+                    let (ray, limit) = (self.leaf_ray(prepared, k), self.limit[k]);
                     let candidates = tree.spheres.sort_out(simd, run, &ray, limit);
-                    searches.take(simd, self, k, run.first, &candidates);
+                    self.take(simd, searches, k, run.first, &candidates);
                 }
             }
             Content::Triangles(run) => {
                 for k in lanes(met) {
-                    let (ray, limit) = (self.leaf_ray(k), self.limit[k]);
+                    let (ray, limit) = (self.leaf_ray(prepared, k), self.limit[k]);
                     let candidates = tree.triangles.sort_out(simd, run, &ray, limit);
-                    searches.take(simd, self, k, run.first, &candidates);
+                    self.take(simd, searches, k, run.first, &candidates);
                 }
             }
-            Content::One(place) => searches.test(simd, self, place, met),
-            Content::Node(_) => {}
+            Content::One(place) if met != 0 => searches.test(simd, self, place, met),
+            Content::One(_) | Content::Node(_) => {}
         }
     }
 
-    /// Which of the rays may meet the box of `node` in `slot`; the same arithmetic as a single ray's.
+    /// Has `searches` take the candidates of a leaf, whose primitives start at `first`, for the ray of lane `k`.
     #[inline(always)]
-    fn meet<S: Simd>(&self, simd: S, node: &Node, slot: usize) -> u64 {
-        let mut met = 0;
-        for start in (0..LANES).step_by(GROUP) {
-            #[cfg(feature = "leaf-study")]
-            crate::accel::study::count_eight();
-            let group = |column: &Singles| load(simd, column, start);
-            let (mut enter, mut leave) = (simd.splat(0.0), group(&self.limit));
-            for axis in 0..3 {
-                let inverse = group(&self.inverse[axis]);
-                let offset = simd.mul(group(&self.origin[axis]), inverse);
-                let low = simd.mul_sub(simd.splat(node.planes[axis][slot]), inverse, offset);
-                let high = simd.mul_sub(simd.splat(node.planes[3 + axis][slot]), inverse, offset);
-                enter = simd.max(enter, simd.min(low, high));
-                leave = simd.min(leave, simd.max(low, high));
-            }
-            met |= u64::from(simd.le(enter, leave)) << start;
+    fn take<S: Simd>(
+        &mut self,
+        simd: S,
+        searches: &mut impl Searches<S>,
+        k: usize,
+        first: u32,
+        candidates: &Candidates,
+    ) {
+        let Candidates { maybe, certain, from, to } = candidates;
+        let mut maybe = *maybe;
+        while maybe != 0 {
+            let lane = (maybe.trailing_zeros() & 7) as usize;
+            maybe &= maybe - 1;
+            let bounds = [from.0[lane], to.0[lane]];
+            let certain = (certain >> lane & 1 != 0).then_some(bounds);
+            searches.take(simd, self, k, first + lane as u32, certain);
         }
-        met
     }
 
-    /// Whether any ray still searches.
-    fn is_open(&self) -> bool {
-        self.limit.iter().any(|limit| *limit >= 0.0)
+    /// How deep any ray still searches.
+    #[inline(always)]
+    fn deepest(&self) -> f32 {
+        // In eight parts, each a lane of vectors.
+        let mut ends = [f32::NEG_INFINITY; GROUP];
+        for start in (0..LANES).step_by(GROUP) {
+            for (part, end) in ends.iter_mut().enumerate() {
+                let other = self.limit[start + part];
+                *end = if other > *end { other } else { *end };
+            }
+        }
+        ends.into_iter().fold(f32::NEG_INFINITY, f32::max)
     }
 
     /// Shows `searches` the leaves that a ray of the packet may meet.
@@ -273,19 +256,10 @@ impl Packet {
     fn walk<S: Simd>(&mut self, simd: S, tree: &Tree, searches: &mut impl Searches<S>) {
         let mut stack = [Visit { enter: 0.0, child: Child::NONE, node: 0, slot: 0 }; STACK];
         let mut len = 0;
-        let mut limit = searches.end(self);
-        let mut visit = match tree.root.content() {
-            Content::Node(node) => {
-                Visit { enter: 0.0, child: tree.root, node: node as u32, slot: 0 }
-            }
-            content => {
-                // A tree of one leaf has no box to be tested.
-                let open = (0..LANES).filter(|k| self.limit[*k] >= 0.0);
-                let open = open.fold(0, |open, k| open | 1 << k);
-                self.leaf(simd, tree, searches, open, content);
-                return;
-            }
-        };
+        let mut limit = self.deepest();
+        // Many packets meet no leaf.
+        let (is_eye, mut eye, mut prepared) = (Eye::is_for(tree, &self.axis), None, None);
+        let mut visit = Visit { enter: 0.0, child: tree.root, node: NO_NODE, slot: 0 };
         loop {
             if let Content::Node(k) = visit.child.content() {
                 #[cfg(feature = "leaf-study")]
@@ -310,12 +284,16 @@ impl Packet {
                     len += 1;
                 }
             } else {
-                let node = &tree.nodes[visit.node as usize];
-                let met = self.meet(simd, node, visit.slot as usize);
-                if met != 0 {
-                    self.leaf(simd, tree, searches, met, visit.child.content());
-                    limit = searches.end(self);
+                let prepared = prepared.get_or_insert_with(|| self.prepared());
+                let met = self.meet(simd, tree, &visit, prepared);
+                match visit.child.content() {
+                    Content::Triangles(run) if is_eye && met.count_ones() >= FEWEST_SEEING => {
+                        let eye = eye.get_or_insert_with(|| Eye::of(self));
+                        eye.leaf(simd, tree, self, searches, run, met);
+                    }
+                    leaf => self.leaf(simd, tree, searches, met, prepared, leaf),
                 }
+                limit = self.deepest();
             }
             loop {
                 let Some(last) = len.checked_sub(1) else { return };
@@ -348,10 +326,10 @@ fn load<S: Simd>(simd: S, column: &Singles, start: usize) -> S::F {
     }
 }
 
-/// The lanes in which a number is not above `limit`.
+/// The lanes that still search.
 #[inline(always)]
-fn within(column: &Column, limit: f64) -> u64 {
-    (0..LANES).fold(0, |all, k| all | u64::from(column[k] <= limit) << k)
+fn open(limit: &Singles) -> u64 {
+    (0..LANES).fold(0, |all, k| all | u64::from(limit[k] >= 0.0) << k)
 }
 
 /// A limit not below `x`, or negative like it, without a branch.

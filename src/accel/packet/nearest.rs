@@ -2,11 +2,10 @@
 
 use std::ops::Range;
 
-use super::{FEWEST_LANES, GROUP, Packet, START_SLACK, Searches, Singles, has_lanes, limit_above};
+use super::{FEWEST_LANES, Packet, Searches, Singles, has_lanes};
 use crate::{
     accel::{
         Accel,
-        leaf::Candidates,
         simd::{Kernel, Simd},
         target::{prefetch, triangle_crossing},
         tree::Tree,
@@ -14,8 +13,12 @@ use crate::{
     geometry::{
         Crossing,
         lanes::{Column, HitLanes, LANES, RayLanes, hull, lanes},
+        triangle::CertainLanes,
     },
 };
+
+/// Fewer lanes than this are as fast with other triangles side by side.
+const FEWEST_OF_ONE: u32 = 12;
 
 /// The search for the nearest hits of rays from one origin in free space.
 pub(in crate::accel) struct NearestPacket<'a> {
@@ -33,23 +36,16 @@ impl Kernel for NearestPacket<'_> {
         let Self { accel, rays, hits } = self;
         let Some(tree) = &accel.tree else { return false };
         let origin = rays.origin.get(rays.used.trailing_zeros() as usize % LANES);
-        let Some(mut packet) = Packet::new(tree, rays, origin, 1.0, f64::INFINITY) else {
+        let Some(mut packet) =
+            Packet::new(tree, rays, origin, 1.0, (f64::INFINITY, 0.0), f64::INFINITY)
+        else {
             return false;
         };
         *hits = HitLanes::NONE;
-        let (mut rates, mut starts) = ([0.0; LANES], [0.0; LANES]);
-        for k in 0..LANES {
-            let searches = packet.limit[k] >= 0.0;
-            let along = limit_above(f64::from(packet.beam.along(packet.direction(k))));
-            let start = packet.beam.depth(packet.point(k)) + START_SLACK;
-            rates[k] = if searches { along } else { 0.0 };
-            starts[k] = if searches { start } else { f32::NEG_INFINITY };
-        }
         let crossed = [[f64::NAN; LANES]; 2];
         let pending = [u32::MAX; LANES];
         let from = [f32::INFINITY; LANES];
-        let mut nearest =
-            Nearest { accel, tree, rays, hits, rates, starts, crossed, pending, from };
+        let mut nearest = Nearest { accel, tree, rays, hits, crossed, pending, from };
         for place in accel.outside() {
             nearest.test(simd, &mut packet, place, rays.used);
         }
@@ -64,14 +60,10 @@ struct Nearest<'a> {
     tree: &'a Tree,
     rays: &'a RayLanes<'a>,
     hits: &'a mut HitLanes,
-    /// How far each ray goes along the beam's axis in one unit of its parameter, rounded up.
-    rates: Singles,
-    /// How far along the axis each ray starts, rounded up.
-    starts: Singles,
     /// Where the lanes cross the primitive that is tried.
     crossed: [Column; 2],
-    /// The place of a certain hit of each lane, beyond all if there is none, that has not been decided in double precision because it may never matter, and what its
-    /// parameter is not less than.
+    /// The place of a certain hit of each lane, beyond all if there is none, that has not been decided in double precision because
+    /// it may never matter, and what its depth is not less than.
     pending: [u32; LANES],
     from: Singles,
 }
@@ -102,21 +94,26 @@ impl Nearest<'_> {
         }
         let range = hull(met);
         simd.triangle_lanes(corners, self.rays, range.clone(), &mut self.crossed);
-        self.offer_lanes(packet, number, range);
+        self.offer_lanes(packet, |_| number, range);
     }
 
-    /// Takes the crossings of the lanes of a range that are better.
+    /// Takes the crossings of the lanes of a range, with the primitives of these numbers, that are better.
     #[inline(always)]
-    fn offer_lanes(&mut self, packet: &mut Packet, number: u32, range: Range<usize>) {
+    fn offer_lanes(
+        &mut self,
+        packet: &mut Packet,
+        number: impl Fn(usize) -> u32,
+        range: Range<usize>,
+    ) {
         let [first, second] = &self.crossed;
         let hits = &mut *self.hits;
         for k in range {
             // The second is never better where the first is ahead.
             let t = if first[k] > 0.0 { first[k] } else { second[k] };
             let is_better =
-                (t > 0.0) & ((t < hits.t[k]) | (t == hits.t[k]) & (number < hits.primitive[k]));
+                (t > 0.0) & ((t < hits.t[k]) | (t == hits.t[k]) & (number(k) < hits.primitive[k]));
             hits.t[k] = if is_better { t } else { hits.t[k] };
-            hits.primitive[k] = if is_better { number } else { hits.primitive[k] };
+            hits.primitive[k] = if is_better { number(k) } else { hits.primitive[k] };
             hits.face[k] = if is_better { 0 } else { hits.face[k] };
             let limit = packet.end_above(k, hits.t[k]);
             packet.limit[k] = if limit < packet.limit[k] { limit } else { packet.limit[k] };
@@ -133,18 +130,46 @@ impl Nearest<'_> {
         }
     }
 
-    /// Decides what is pending.
+    /// Decides what is pending: the triangles of few rays side by side.
     #[inline(always)]
     fn finish<S: Simd>(&mut self, simd: S, packet: &mut Packet) {
         let pending = |k: usize| self.pending[k] != u32::MAX && self.from[k] <= packet.limit[k];
         let mut open = (0..LANES).fold(0_u64, |open, k| open | u64::from(pending(k)) << k);
+        let mut few = 0;
         while open != 0 {
             let place = self.pending[open.trailing_zeros() as usize];
             let same = |k: usize| u64::from(self.pending[k] == place) << k;
             let same = open & (0..LANES).fold(0, |all, k| all | same(k));
             open &= !same;
-            self.decide(simd, packet, place, same, true);
+            let is_triangle = self.tree.corners(place).is_some() && has_lanes();
+            if is_triangle && same.count_ones() < FEWEST_OF_ONE {
+                few |= same;
+            } else {
+                self.decide(simd, packet, place, same, true);
+            }
         }
+        self.decide_few(packet, few);
+    }
+
+    /// Decides the triangles that are pending in some lanes.
+    #[inline(always)]
+    fn decide_few(&mut self, packet: &mut Packet, few: u64) {
+        let (mut triangles, mut numbers) = (CertainLanes::NONE, [0; LANES]);
+        for k in lanes(few) {
+            let Some(corners) = self.tree.corners(self.pending[k]) else { continue };
+            #[cfg(feature = "leaf-study")]
+            crate::accel::study::count_triangle();
+            triangles.set(k, corners);
+            numbers[k] = self.accel.numbers[self.pending[k] as usize];
+        }
+        let range = hull(few);
+        let [first, second] = &mut self.crossed;
+        for k in range.clone() {
+            let t = triangles.parameter(k, self.rays);
+            first[k] = if few >> k & 1 != 0 { t } else { f64::NAN };
+            second[k] = f64::NAN;
+        }
+        self.offer_lanes(packet, |k| numbers[k], range);
     }
 }
 
@@ -164,7 +189,7 @@ impl<S: Simd> Searches<S> for Nearest<'_> {
             }
             return;
         }
-        self.offer_lanes(packet, number, range);
+        self.offer_lanes(packet, |_| number, range);
     }
 
     #[inline(always)]
@@ -173,43 +198,21 @@ impl<S: Simd> Searches<S> for Nearest<'_> {
         simd: S,
         packet: &mut Packet,
         k: usize,
-        first: u32,
-        candidates: &Candidates,
+        place: u32,
+        certain: Option<[f32; 2]>,
     ) {
         // A pending hit loses to one that ends before it starts; where intervals overlap, both are decided.
-        let Candidates { mut maybe, certain, from, to } = *candidates;
-        while maybe != 0 {
-            let lane = maybe.trailing_zeros() & 7;
-            maybe &= maybe - 1;
-            let place = first + lane;
-            if certain & 1 << lane == 0 {
-                self.decide(simd, packet, place, 1 << k, false);
-                continue;
-            }
-            let (from, to) = (from.0[lane as usize], to.0[lane as usize]);
-            if from > packet.limit[k] {
-                continue;
-            }
-            if to >= self.from[k] && self.pending[k] != u32::MAX {
-                self.decide(simd, packet, self.pending[k], 1 << k, true);
-            }
-            (self.pending[k], self.from[k]) = (place, from);
-            packet.limit[k] = packet.limit[k].min(to);
-            prefetch(simd, self.accel, self.tree, place);
+        let Some([from, to]) = certain else {
+            return self.decide(simd, packet, place, 1 << k, false);
+        };
+        if from > packet.limit[k] {
+            return;
         }
-    }
-
-    #[inline(always)]
-    fn end(&self, packet: &Packet) -> f32 {
-        // In eight parts, each a lane of vectors.
-        let mut ends = [f32::NEG_INFINITY; GROUP];
-        for start in (0..LANES).step_by(GROUP) {
-            for (part, end) in ends.iter_mut().enumerate() {
-                let k = start + part;
-                let other = packet.limit[k] * self.rates[k] + self.starts[k];
-                *end = if other > *end { other } else { *end };
-            }
+        if to >= self.from[k] && self.pending[k] != u32::MAX {
+            self.decide(simd, packet, self.pending[k], 1 << k, true);
         }
-        ends.into_iter().fold(f32::NEG_INFINITY, f32::max)
+        (self.pending[k], self.from[k]) = (place, from);
+        packet.limit[k] = packet.limit[k].min(to);
+        prefetch(simd, self.accel, self.tree, place);
     }
 }

@@ -45,8 +45,8 @@ fn leaves_are(leaves: Leaves) -> bool {
 pub type Counts = [u64; COUNTED.len()];
 
 /// What is counted: tests of shapes in double precision; of leaves, and of nodes, by one ray; and of a packet's leaves
-/// (eight of its rays against one box) and nodes (its beam).
-pub const COUNTED: [&str; 11] = [
+/// (eight of its rays against one box; eight triangles seen, eight rays against one of them) and nodes (its beam).
+pub const COUNTED: [&str; 13] = [
     "sphere",
     "cylinder",
     "cone",
@@ -58,6 +58,8 @@ pub const COUNTED: [&str; 11] = [
     "node",
     "8 rays",
     "beam",
+    "8 triangles seen",
+    "8 rays at one",
 ];
 
 static COUNTS: [AtomicU64; COUNTED.len()] = [const { AtomicU64::new(0) }; COUNTED.len()];
@@ -119,6 +121,18 @@ pub(super) fn count_eight() {
 #[inline(always)]
 pub(super) fn count_beam() {
     count(10);
+}
+
+/// Counts the look of a packet at a leaf of triangles.
+#[inline(always)]
+pub(super) fn count_eye() {
+    count(11);
+}
+
+/// Counts the test of eight rays of a packet against one triangle that is seen.
+#[inline(always)]
+pub(super) fn count_seen() {
+    count(12);
 }
 
 /// Something to be compiled for chosen instructions.

@@ -204,7 +204,7 @@ fn packets_from_afar_agree_with_single_rays() {
 }
 
 /// Whether the rays are traced together rather than one by one.
-fn is_traced_whole(accel: &Accel, all: &[Ray]) -> bool {
+pub(super) fn is_traced_whole(accel: &Accel, all: &[Ray]) -> bool {
     let (mut origin, mut dir, mut hits) = (Vectors::ZERO, Vectors::ZERO, HitLanes::NONE);
     for (k, ray) in all.iter().enumerate() {
         origin.set(k, ray.origin);
