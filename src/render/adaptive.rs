@@ -8,6 +8,7 @@ use std::sync::{
 };
 
 use glam::DVec2;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -26,6 +27,9 @@ use crate::{
     },
     color::Rgb,
 };
+
+/// Pixels that a thread looks at when their demand is added up.
+const AT_ONCE: usize = 1 << 14;
 
 /// A picture that gets better with every call of [`Adaptive::refine`].
 #[derive(Serialize, Deserialize)]
@@ -234,9 +238,10 @@ impl Adaptive {
 
     /// What the next stages of all pixels are worth, and take.
     pub(super) fn demand(&self) -> Demand {
-        let mut demand = Demand::new();
-        self.known.worths.values().iter().for_each(|worth| demand.add(worth));
-        demand
+        let parts: Vec<Demand> =
+            self.known.worths.values().par_chunks(AT_ONCE).map(Demand::of).collect();
+        // In the order of the pixels, on which sums depend.
+        parts.iter().fold(Demand::of(&[]), Demand::and)
     }
 
     pub(super) fn into_picture(self) -> Picture {

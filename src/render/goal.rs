@@ -230,12 +230,29 @@ pub(super) struct Demand {
 }
 
 impl Demand {
-    pub(super) fn new() -> Self {
-        Self { rays: [0; LEVELS], expected: [0.0; LEVELS], settled: 0.0, pixels: 0 }
+    /// The demand of some pixels.
+    pub(super) fn of(worths: &[Worth]) -> Self {
+        let (rays, expected) = ([0; LEVELS], [0.0; LEVELS]);
+        let mut demand = Self { rays, expected, settled: 0.0, pixels: 0 };
+        for worth in worths {
+            demand.add(worth);
+        }
+        demand
+    }
+
+    /// The demand of these and other pixels.
+    pub(super) fn and(mut self, other: &Self) -> Self {
+        for level in 0..LEVELS {
+            self.rays[level] += other.rays[level];
+            self.expected[level] += other.expected[level];
+        }
+        self.settled += other.settled;
+        self.pixels += other.pixels;
+        self
     }
 
     /// Adds a pixel.
-    pub(super) fn add(&mut self, worth: &Worth) {
+    fn add(&mut self, worth: &Worth) {
         let expected = f64::from(worth.expected);
         self.pixels += 1;
         match level_of(worth) {
@@ -289,7 +306,7 @@ mod tests {
     /// Oracle: levels counted by hand; a stage is above the threshold of its level and all lower ones.
     #[test]
     fn demand_is_counted_by_level() {
-        let mut demand = Demand::new();
+        let mut demand = Demand::of(&[]);
         assert_eq!(demand.level_for(1.0), None);
         let mut add = |per_ray: f32, rays: f32, expected: f32| {
             demand.add(&Worth { error: per_ray * rays, rays, expected });

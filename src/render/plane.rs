@@ -1,5 +1,6 @@
 //! Rectangles of pixels, which may reach over the picture's edge, and what is known of each pixel in one.
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -9,6 +10,9 @@ use crate::{
 
 /// The side of a tile in pixels: small enough to share the work out evenly, large enough to cost nothing by itself.
 pub(super) const TILE_SIDE: u32 = 16;
+
+/// Values that a thread writes at least.
+const AT_ONCE: usize = 1 << 14;
 
 /// A rectangle of pixels, half open, in columns and rows of the whole picture; those of its apron have -1 and width or height.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -84,9 +88,11 @@ pub(super) struct Plane<T> {
     values: Vec<T>,
 }
 
-impl<T: Clone> Plane<T> {
+impl<T: Clone + Send + Sync> Plane<T> {
+    /// The same value everywhere. All threads write it, because pages of memory take their time when they are first written to.
     pub(super) fn new(area: Area, value: T) -> Self {
-        Self { area, values: vec![value; area.len()] }
+        let places = (0..area.len()).into_par_iter().with_min_len(AT_ONCE);
+        Self { area, values: places.map(|_| value.clone()).collect() }
     }
 }
 

@@ -88,7 +88,8 @@ fn a_picture_towards_an_error_goes_on_from_wherever_it_was_left() {
             break part.into_rendering(&effort);
         }
         stops += 1;
-        assert!(path.exists(), "stop {stops}");
+        // Stopped before it began, there is nothing to keep.
+        assert!(path.exists() || part.share_done() == 0.0, "stop {stops}");
     };
     assert!(stops >= 3 && kept >= 2, "{stops} stops, {kept} of them after the first rays");
     assert_same(&again, &whole);
