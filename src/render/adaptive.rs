@@ -17,7 +17,7 @@ use super::{
     goal::Demand,
     known::Known,
     outlook::{Outlook, tile_of},
-    plane::{Area, Plane},
+    plane::{AT_ONCE, Area, Plane},
     round::{Pixel, Round, Threshold, add_rays, is_disputed, is_picked},
 };
 use crate::{
@@ -27,9 +27,6 @@ use crate::{
     },
     color::Rgb,
 };
-
-/// Pixels that a thread looks at when their demand is added up.
-const AT_ONCE: usize = 1 << 14;
 
 /// A picture that gets better with every call of [`Adaptive::refine`].
 #[derive(Serialize, Deserialize)]

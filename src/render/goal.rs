@@ -160,8 +160,9 @@ impl Unfinished {
             }
         }
         let (now, rays) = (Instant::now(), self.adaptive.spent() - before);
-        if now >= end {
-            let late = Some(started.elapsed());
+        // Without rays there was one in each pixel already.
+        if rays > 0 && now >= end {
+            let late = Some(now - started);
             return (self.adaptive, Outcome { late, ..Outcome::default() });
         }
         if rays > 0 {

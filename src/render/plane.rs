@@ -11,8 +11,8 @@ use crate::{
 /// The side of a tile in pixels: small enough to share the work out evenly, large enough to cost nothing by itself.
 pub(super) const TILE_SIDE: u32 = 16;
 
-/// Values that a thread writes at least.
-const AT_ONCE: usize = 1 << 14;
+/// Values that a thread takes at least, where all of a plane's are gone through.
+pub(super) const AT_ONCE: usize = 1 << 14;
 
 /// A rectangle of pixels, half open, in columns and rows of the whole picture; those of its apron have -1 and width or height.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

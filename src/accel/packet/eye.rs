@@ -13,6 +13,8 @@
 //! Source for the test: Möller & Trumbore, "Fast, minimum storage ray/triangle intersection", *Journal of Graphics Tools* 2(1),
 //! 1997.
 
+use glam::DVec3;
+
 use super::{GROUP, Packet, Searches, load};
 use crate::{
     accel::{
@@ -64,7 +66,7 @@ impl Eye {
     /// Whether there are triangles to be seen and the common point is not too far away.
     #[inline(always)]
     pub(super) fn is_for(tree: &Tree, axis: &Axis) -> bool {
-        tree.has_triangles() && length(axis.point) <= FURTHEST
+        tree.has_triangles() && DVec3::from_array(axis.point).length() <= FURTHEST
     }
 
     /// The common point of the rays.
@@ -74,7 +76,7 @@ impl Eye {
         Self {
             point: point.map(|x| x as f32),
             axis: packet.axis,
-            reach: above(length(point) + 1.75),
+            reach: above(DVec3::from_array(point).length() + 1.75),
             lead: [below(lead), above(lead)],
             slopes: packet.slopes().map(|column| ranges(column, &packet.limit)),
         }
@@ -231,11 +233,6 @@ fn product<S: Simd>(
 ) -> S::F {
     let right = simd.mul_add(rights, simd.splat(right.0[lane]), simd.splat(along.0[lane]));
     simd.mul_add(ups, simd.splat(up.0[lane]), right)
-}
-
-/// The length of a vector.
-fn length([x, y, z]: [f64; 3]) -> f64 {
-    (x * x + y * y + z * z).sqrt()
 }
 
 /// The largest and the least numbers of each group in the lanes that are open; none is both.
