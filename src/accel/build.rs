@@ -13,7 +13,7 @@ use std::fmt::{self, Display, Formatter};
 use glam::{Vec3, Vec3A};
 use obvhs::{
     aabb::Aabb,
-    bvh2::{node::Bvh2Node, reinsertion::ReinsertionOptimizer},
+    bvh2::{Bvh2, node::Bvh2Node, reinsertion::ReinsertionOptimizer},
     ploc::{PlocBuilder, PlocSearchDistance, SortPrecision},
 };
 use rayon::prelude::*;
@@ -115,14 +115,14 @@ pub(super) fn binary(boxes: Vec<Aabb>, meshes: bool, preset: Preset) -> Vec<Bvh2
     let Effort { reach, first_passes, reinsertion } = Effort::new(preset, boxes.len(), meshes);
     let precision = if boxes.len() <= 2_000 { SortPrecision::U128 } else { SortPrecision::U64 };
     let indices = (0..boxes.len() as u32).collect();
-    let mut bvh = PlocBuilder::with_capacity(boxes.len()).build(
-        reach,
-        &boxes,
-        indices,
-        precision,
-        first_passes,
-    );
-    drop(boxes);
+    let mut bvh = Bvh2::zeroed(boxes.len());
+    let mut builder = PlocBuilder::with_capacity(boxes.len());
+    huge::advise(&bvh.nodes);
+    huge::advise(&builder.mortons);
+    huge::advise(&builder.current_nodes);
+    huge::advise(&builder.next_nodes);
+    builder.build_with_bvh(&mut bvh, reach, &boxes, indices, precision, first_passes);
+    drop((boxes, builder));
     let mut optimizer = ReinsertionOptimizer::default();
     for share in reinsertion {
         optimizer.run(&mut bvh, *share, None);

@@ -62,12 +62,14 @@ struct Part {
     /// The leaves of each kind but the last, by their places among the primitives of that kind.
     runs: [Vec<Run>; 3],
     depth: usize,
+    /// Binary nodes that are to be looked at, and the slots that they may take; only while a node or a leaf is made.
+    todo: Vec<(u32, usize)>,
 }
 
 impl Part {
     fn new() -> Self {
-        let (order, runs) = Default::default();
-        Self { nodes: Vec::new(), root: Child::NONE, order, runs, depth: 1 }
+        let (order, runs, todo) = Default::default();
+        Self { nodes: Vec::new(), root: Child::NONE, order, runs, depth: 1, todo }
     }
 }
 
@@ -131,9 +133,9 @@ impl Collapse<'_> {
     /// Makes a node, and tells `next` which ones to make for its children.
     fn make(&self, task: Task, part: &mut Part, mut next: impl FnMut(Task)) {
         part.depth = part.depth.max(task.depth);
-        let mut slots = Vec::with_capacity(WIDTH);
-        self.slots_of(task.from, &mut slots);
-        for (slot, child) in slots.iter().copied().enumerate() {
+        let mut slots = [0; WIDTH];
+        let count = self.slots_of(task.from, &mut slots, &mut part.todo);
+        for (slot, child) in slots.into_iter().take(count).enumerate() {
             let content = if self.plans.get(child).is_leaf {
                 self.leaf(child, part)
             } else {
@@ -147,9 +149,10 @@ impl Collapse<'_> {
         }
     }
 
-    /// The binary nodes that become the children of the wide node made from `node`.
-    fn slots_of(&self, node: u32, slots: &mut Vec<u32>) {
-        let mut todo = vec![(node, WIDTH)];
+    /// Puts the binary nodes that become the children of the wide node made from `node` into `slots`, and returns how many they are.
+    fn slots_of(&self, node: u32, slots: &mut [u32; WIDTH], todo: &mut Vec<(u32, usize)>) -> usize {
+        let mut count = 0;
+        todo.push((node, WIDTH));
         while let Some((k, mut budget)) = todo.pop() {
             let (node, plan) = (&self.binary[k as usize], self.plans.get(k));
             if budget < WIDTH {
@@ -158,7 +161,8 @@ impl Collapse<'_> {
                 }
             }
             if budget == 1 || node.is_leaf() {
-                slots.push(k);
+                slots[count] = k;
+                count += 1;
                 continue;
             }
             let left = node.first_index;
@@ -167,6 +171,7 @@ impl Collapse<'_> {
             todo.push((left + 1, budget - given));
             todo.push((left, given));
         }
+        count
     }
 
     /// Puts the primitives of `node` next in the order of their kind, and returns the leaf that holds them.
@@ -174,13 +179,13 @@ impl Collapse<'_> {
         let kind = self.plans.get(node).kind;
         let order = &mut part.order[kind as usize];
         let first = order.len();
-        let mut todo = vec![node];
-        while let Some(k) = todo.pop() {
+        part.todo.push((node, 1));
+        while let Some((k, _)) = part.todo.pop() {
             let node = &self.binary[k as usize];
             if node.is_leaf() {
                 order.push(node.first_index);
             } else {
-                todo.extend([node.first_index + 1, node.first_index]);
+                part.todo.extend([(node.first_index + 1, 1), (node.first_index, 1)]);
             }
         }
         let run = Run { first: first as u32, count: (order.len() - first) as u32 };

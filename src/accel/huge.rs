@@ -4,9 +4,14 @@
 /// An empty vector with room for `count` elements, in large pages where the system has some.
 pub(super) fn vec_with_capacity<T>(count: usize) -> Vec<T> {
     let vec: Vec<T> = Vec::with_capacity(count);
-    #[cfg(target_os = "linux")]
-    linux::advise(vec.as_ptr().addr(), count * size_of::<T>());
+    advise(&vec);
     vec
+}
+
+/// Asks for large pages for a vector's memory, none of which has been written to; what the allocator has zeroed has not.
+pub(super) fn advise<T>(vec: &Vec<T>) {
+    #[cfg(target_os = "linux")]
+    linux::advise(vec.as_ptr().addr(), vec.capacity() * size_of::<T>());
 }
 
 /// Gives back to the system what the allocator keeps of memory that is free; GNU's keeps tens of megabytes.

@@ -172,7 +172,8 @@ impl Triangles {
         let rows = Rows::new(runs, |place| {
             let [a, b, c] = corners(place);
             let (u, v) = (b - a, c - a);
-            let longest = u.length().max(v.length()).max((c - b).length());
+            let longest = [u, v, c - b].map(DVec3::length_squared);
+            let longest = longest[0].max(longest[1]).max(longest[2]).sqrt();
             let [a, u, v] = [a, u, v].map(|x| x.as_vec3().to_array());
             // What is larger than usual is as good as longer.
             let size = above(longest * coarseness);

@@ -26,9 +26,9 @@ impl<const N: usize> Rows<N> {
     pub(super) fn new(runs: &[Run], numbers_of: impl Fn(u32) -> [f32; N] + Sync) -> Self {
         let base = runs.first().map_or(0, |run| run.first);
         let count = runs.last().map_or(0, |run| run.places().end - base as usize);
-        let mut numbers = huge::vec_with_capacity(N * (count + WIDTH));
         // Eight numbers are read from where any row starts.
-        numbers.resize(N * (count + WIDTH), 0.0);
+        let mut numbers = vec![0.0; N * (count + WIDTH)];
+        huge::advise(&numbers);
         fill(&mut numbers, runs, &numbers_of);
         Self { numbers, base }
     }

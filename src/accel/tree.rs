@@ -52,13 +52,13 @@ impl Tree {
             };
             (frame.point(s.center()), frame.length(s.radius()))
         });
-        let triangles = Triangles::new(&wide.triangle_runs, frame.coarseness(), |place| {
-            corners_of(&shapes[place as usize]).map(|v| frame.point(v))
-        });
         let places = wide.triangle_runs.first().zip(wide.triangle_runs.last());
         let places = places.map_or(0..0, |(a, b)| a.places().start..b.places().end);
-        let mut corners = huge::vec_with_capacity(places.len());
+        let (base, mut corners) = (places.start, huge::vec_with_capacity(places.len()));
         shapes[places].par_iter().map(corners_of).collect_into_vec(&mut corners);
+        let triangles = Triangles::new(&wide.triangle_runs, frame.coarseness(), |place| {
+            corners[place as usize - base].map(|v| frame.point(v))
+        });
         Self { frame, root: wide.root, nodes: wide.nodes, spheres, triangles, corners }
     }
 
