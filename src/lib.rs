@@ -75,6 +75,7 @@ pub mod camera;
 pub mod checkpoint;
 pub mod classic;
 pub mod color;
+mod decode;
 pub mod film;
 pub mod geometry;
 pub mod light;

@@ -7,6 +7,7 @@ use std::path::Path;
 use image::{ImageReader, RgbImage};
 
 use super::{ImageError, similarity::ssim};
+use crate::decode::decode;
 
 /// The difference of two pictures in levels of 255, over all pixels and channels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -113,7 +114,7 @@ pub fn read_png_rgb8(path: impl AsRef<Path>) -> Result<RgbImage, ImageError> {
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(16 << 30);
     reader.limits(limits);
-    match reader.decode() {
+    match decode(|| reader.decode()) {
         Ok(picture) => Ok(picture.into_rgb8()),
         Err(image::ImageError::IoError(source)) if source.raw_os_error().is_some() => {
             Err(ImageError::Read { path: path.to_owned(), source })
@@ -212,6 +213,8 @@ mod tests {
         let path = folder.path().join("picture.png");
         assert!(matches!(read_png_rgb8(&path), Err(ImageError::Read { .. })));
         assert!(matches!(read_png_rgb8(folder.path()), Err(ImageError::Read { .. })));
+        let palette = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/broken/image/palette_49.png");
+        assert!(matches!(read_png_rgb8(palette), Err(ImageError::Decode { .. })));
         RgbImage::new(50, 50).save(&path).expect("written");
         let whole = std::fs::read(&path).expect("readable");
         for damaged in [&b""[..], b"P6 1 1 255", &whole[..whole.len() / 2], &whole[..40]] {

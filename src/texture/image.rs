@@ -5,7 +5,10 @@ use std::{io::Cursor, sync::OnceLock};
 use glam::DVec2;
 use thiserror::Error;
 
-use crate::color::{Rgb, srgb_to_linear};
+use crate::{
+    color::{Rgb, srgb_to_linear},
+    decode::decode,
+};
 
 /// The longest side and the largest number of texels of a texture that is accepted.
 const LARGEST_SIDE: u32 = 1 << 15;
@@ -78,14 +81,15 @@ impl Image {
                 .with_guessed_format()
                 .map_err(|source| error(source.into()))
         };
-        let (width, height) = reader()?.into_dimensions().map_err(error)?;
+        let sides = reader()?;
+        let (width, height) = decode(|| sides.into_dimensions()).map_err(error)?;
         if u64::from(width) * u64::from(height) > MOST_TEXELS {
             let (name, most) = (name.to_owned(), MOST_TEXELS);
             return Err(ImageTextureError::TooLarge { name, width, height, most });
         }
         let mut reader = reader()?;
         reader.limits(limits);
-        let picture = reader.decode().map_err(error)?.into_rgb8();
+        let picture = decode(|| reader.decode()).map_err(error)?.into_rgb8();
         Ok(Self {
             width: picture.width() as usize,
             height: picture.height() as usize,
@@ -227,6 +231,19 @@ mod tests {
             png[29..33].copy_from_slice(&(!crc).to_be_bytes());
             let error = Image::decode("bomb", &png).expect_err("too large").to_string();
             assert!(error.contains(&side.to_string()) || side > 1 << 30, "{error}");
+        }
+    }
+
+    /// Oracle: png 0.18.1 panics at a palette of 49 bytes, zune-jpeg 0.5.15 at a first component that is sampled less
+    /// densely than the second.
+    #[test]
+    fn files_at_which_decoders_panic_are_errors() {
+        for (name, bytes) in [
+            ("palette", &include_bytes!("../../tests/broken/image/palette_49.png")[..]),
+            ("sampling", include_bytes!("../../tests/broken/image/sampling.jpg")),
+        ] {
+            let error = Image::decode(name, bytes).expect_err(name).to_string();
+            assert!(error.contains(name), "{error}");
         }
     }
 
