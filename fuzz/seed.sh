@@ -1,8 +1,9 @@
 #!/bin/sh
-# Puts the small files of the tests into the corpora.
+# Puts what runs before have found, and the small files of the tests, into the corpora.
 cd "$(dirname "$0")/.." || exit 1
 for kind in obj nff toml image; do
     mkdir -p "fuzz/corpus/$kind"
+    tar -C "fuzz/corpus/$kind" -xJf "fuzz/corpus/$kind.tar.xz"
 done
 find tests/broken/obj -name '*.obj' -size -8k -exec cp {} fuzz/corpus/obj/ \;
 for library in tests/broken/obj/*.mtl models/*/*.mtl; do

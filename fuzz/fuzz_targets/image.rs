@@ -2,6 +2,8 @@
 
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| {
+mod alone;
+
+libfuzzer_sys::fuzz_target!(init: alone::alone(), |data: &[u8]| {
     let _ = whitted::texture::Image::decode("fuzz", data);
 });

@@ -2,7 +2,9 @@
 
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| {
+mod alone;
+
+libfuzzer_sys::fuzz_target!(init: alone::alone(), |data: &[u8]| {
     let mark = b"#mtl\n";
     let at = data.windows(mark.len()).position(|part| part == mark);
     let (obj, mtl) = match at {

@@ -2,13 +2,15 @@
 
 #![no_main]
 
+mod alone;
+
 use whitted::scene::{Scene, SceneError, builtin, format::SceneText};
 use whitted::texture::Image;
 
 /// A picture of one texel in the place of the program's own, whose decoding takes most of the time.
 const PICTURE: &[u8] = include_bytes!("texel.png");
 
-libfuzzer_sys::fuzz_target!(|text: &str| {
+libfuzzer_sys::fuzz_target!(init: alone::alone(), |text: &str| {
     let mut picture = |name: &str| match name.strip_prefix(builtin::PREFIX) {
         Some("cat.png" | "flower.png") => Ok(Image::decode(name, PICTURE)?),
         _ => builtin::picture(name),
