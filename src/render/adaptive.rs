@@ -118,7 +118,7 @@ impl Adaptive {
                 }
                 wanting.retain(|&place| round.wants(&chosen[place]));
             }
-            lock(&known).put_back(tile, chosen, centers);
+            lock(&known).put_back(tile, chosen, centers, threshold);
         });
     }
 

@@ -63,13 +63,13 @@ impl Known {
                 if has_thin { sampler.least_samples(x as u32, y as u32) } else { 0 }
             };
             let looks = Window::of_centers(tile, centers).looks();
-            let (mut colors, mut worths) = (Vec::new(), Vec::new());
-            let pixels: Vec<Pixel> = tile
-                .pixels()
-                .zip(looks)
-                .map(|((x, y), look)| {
-                    let center = centers.at(x, y);
-                    let color = if look.inner { corrected(centers, x, y) } else { center.color };
+            let (count, columns) = (tile.len(), centers.columns(tile));
+            let (mut pixels, mut worths) = (Vec::with_capacity(count), Vec::with_capacity(count));
+            let (mut colors, mut samples) = (Vec::with_capacity(count), Vec::with_capacity(count));
+            for (y, looks) in (tile.y0..tile.y1).zip(looks.chunks(tile.width())) {
+                let rows = [y - 1, y, y + 1].map(|y| centers.nearest_row(y));
+                for ((x, place), look) in (tile.x0..tile.x1).zip(columns.clone()).zip(looks) {
+                    let center = &rows[1][place];
                     let skips = look.suspect && skips_cells(centers, x, y, look.contrast);
                     let cells = if skips { LEAST_IN_CELLS } else { 0 };
                     let error = look.center_error(look.inner);
@@ -81,17 +81,18 @@ impl Known {
                         busy: look.busy,
                         ..Pixel::default()
                     };
-                    colors.push(color);
+                    colors.push(if look.inner { corrected(&rows, place) } else { center.color });
+                    samples.push(u32::from(center.rays > 0));
                     worths.push(Worth::of(&pixel, error, stages, center));
-                    pixel
-                })
-                .collect();
+                    pixels.push(pixel);
+                }
+            }
             let outlook = Outlook::of(worths.iter());
-            let is_of_one_color =
-                |(_, pixel): &(_, &Pixel)| pixel.suspect && pixel.contrast < ONE_COLOR;
-            let found = tile.pixels().zip(&pixels).filter(is_of_one_color);
-            lock(&of_one_color).extend(found.map(|(place, _)| place));
-            let samples = tile.pixels().map(|(x, y)| u32::from(centers.at(x, y).rays > 0));
+            let is_of_one_color = |pixel: &Pixel| pixel.suspect && pixel.contrast < ONE_COLOR;
+            if pixels.iter().any(is_of_one_color) {
+                let found = tile.pixels().zip(&pixels).filter(|(_, pixel)| is_of_one_color(pixel));
+                lock(&of_one_color).extend(found.map(|(place, _)| place));
+            }
             let mut known = lock(&known);
             known.pixels.put(tile, pixels);
             known.colors.put(tile, colors);
@@ -147,14 +148,23 @@ impl Known {
         chosen
     }
 
-    /// Puts them back, with what became of them.
-    pub(super) fn put_back(&mut self, tile: &Area, chosen: Vec<Chosen>, centers: &Plane<Sample>) {
-        for Chosen { x, y, pixel, worth, has_changed } in chosen {
+    /// Puts them back, with what became of them by the `threshold`.
+    pub(super) fn put_back(
+        &mut self,
+        tile: &Area,
+        chosen: Vec<Chosen>,
+        centers: &Plane<Sample>,
+        threshold: Threshold,
+    ) {
+        for Chosen { x, y, mut pixel, worth, has_changed } in chosen {
             if let (true, Some(refined)) = (has_changed, &pixel.refined) {
                 *self.colors.at_mut(x, y) = refined.color();
                 // Corners that only neighbours wanted do not count, or it would depend on whether those are rendered.
                 let own = !pixel.suspect || is_disputed(centers, x, y);
                 *self.samples.at_mut(x, y) = 1 + u32::from(own) + refined.points();
+            }
+            if threshold.is_final() {
+                pixel.refined = None;
             }
             *self.worths.at_mut(x, y) = worth;
             *self.pixels.at_mut(x, y) = pixel;

@@ -137,13 +137,13 @@ pub(super) fn skips_cells(centers: &Plane<Sample>, x: i64, y: i64, contrast: f32
             && ![(-1, 0), (1, 0), (0, -1), (0, 1)].iter().all(|&(dx, dy)| is_own(dx, dy))
 }
 
-/// The centre's colour with the second-order term of the integral over the pixel: c + (E + W + N + S - 4c)/24.
-pub(super) fn corrected(centers: &Plane<Sample>, x: i64, y: i64) -> Rgb {
-    let k = centers.nearest_column(x);
-    let [above, row, below] = [y - 1, y, y + 1].map(|y| centers.nearest_row(y));
-    let (center, last) = (row[k].color, row.len() - 1);
-    let (west, east) = (row[k.saturating_sub(1)].color, row[(k + 1).min(last)].color);
-    let sides = west + east + above[k].color + below[k].color;
+/// The colour of the centre at a place in the middle one of three rows, in all of which it has neighbours, with the second-order term of
+/// the integral over the pixel: c + (E + W + N + S - 4c)/24.
+#[inline]
+pub(super) fn corrected([above, row, below]: &[&[Sample]; 3], place: usize) -> Rgb {
+    let center = row[place].color;
+    let (west, east) = (row[place - 1].color, row[place + 1].color);
+    let sides = west + east + above[place].color + below[place].color;
     (center + (sides - center * 4.0) / 24.0).max(Rgb::ZERO).min(Rgb::ONE)
 }
 

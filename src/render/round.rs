@@ -33,6 +33,13 @@ pub(super) enum Threshold {
     PerRayOfSome(f32, f32, u32),
 }
 
+impl Threshold {
+    /// Whether pixels above it go on until they are below or may get no more, so that what their samples were is not asked again.
+    pub(super) fn is_final(self) -> bool {
+        matches!(self, Self::Error(_))
+    }
+}
+
 /// What is known of a pixel.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Pixel {
@@ -135,7 +142,7 @@ impl Round<'_> {
 
     /// Whether a pixel with corners wants the samples of its next stage.
     pub(super) fn wants(&self, Chosen { pixel, worth, .. }: &Chosen) -> bool {
-        pixel.stage > 0 && worth.exceeds(self.threshold)
+        pixel.refined.is_some() && worth.exceeds(self.threshold)
     }
 
     /// Takes over what is known of a pixel after a stage.
