@@ -1,11 +1,14 @@
 //! The geometry and the rays of the ray-query benchmark: spheres or meshes in a box, and camera, shadow and random rays.
 
-use std::{collections::HashMap, f64::consts::TAU};
+use std::{collections::HashMap, f64::consts::TAU, sync::Arc};
 
 use glam::DVec3;
 use whitted::{
     accel::Accel,
-    geometry::{Bounds, Ray, Shape, Sphere, Triangle},
+    geometry::{
+        Bounds, Mesh, Ray, Shape, Sphere,
+        mesh::{Attributes, has_area},
+    },
 };
 
 /// Pixels along each side of the camera's picture.
@@ -70,13 +73,19 @@ pub(crate) fn spheres(count: usize) -> Geometry {
 /// `count` spheres, each an icosahedron divided `level` times.
 pub(crate) fn icospheres(count: usize, level: usize) -> Geometry {
     let (centers, radius) = centers(count);
-    let (vertices, faces) = icosphere(level);
-    let triangle = |c: DVec3, face: &[usize; 3]| {
-        let corners = face.map(|k| single(c + vertices[k] * radius));
-        Triangle::try_new(corners).expect("a triangle").into()
-    };
-    let shapes = centers.iter().flat_map(|c| faces.iter().map(move |f| triangle(*c, f)));
-    Geometry { shapes: shapes.collect(), bounds: BOX }
+    let (corners, faces) = icosphere(level);
+    let vertices =
+        centers.iter().flat_map(|c| corners.iter().map(move |v| single(*c + *v * radius)));
+    let starts = (0..count).map(|k| k * corners.len());
+    let triangles =
+        starts.flat_map(|start| faces.iter().map(move |f| f.map(|k| (start + k) as u32)));
+    Geometry { shapes: faces_of(vertices.collect(), triangles.collect()), bounds: BOX }
+}
+
+/// The triangles of a mesh.
+fn faces_of(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Vec<Shape> {
+    let mesh = Mesh::try_new(vertices, triangles, Attributes::default()).expect("a mesh");
+    Arc::new(mesh).faces().map(Shape::from).collect()
 }
 
 fn icosphere(level: usize) -> (Vec<DVec3>, Vec<[usize; 3]>) {
@@ -185,8 +194,8 @@ pub(crate) fn mesh(text: &str) -> Geometry {
                 vertices.push(DVec3::new(x[0], x[1], x[2]));
             }
             Some("f") => {
-                let index = |word: &str| word.split('/').next().expect("a corner").parse::<usize>();
-                let corners: Vec<usize> =
+                let index = |word: &str| word.split('/').next().expect("a corner").parse::<u32>();
+                let corners: Vec<u32> =
                     words.map(|word| index(word).expect("an index") - 1).collect();
                 faces.extend(corners[1..].windows(2).map(|w| [corners[0], w[0], w[1]]));
             }
@@ -197,8 +206,8 @@ pub(crate) fn mesh(text: &str) -> Geometry {
     let fit =
         |v: &DVec3| single((*v - box_of.center()) * (40.0 / box_of.size()) + DVec3::Z * -100.0);
     let vertices: Vec<DVec3> = vertices.iter().map(fit).collect();
-    let triangle =
-        |face: &[usize; 3]| Triangle::try_new(face.map(|k| vertices[k])).ok().map(Shape::from);
-    let shapes = faces.iter().filter_map(triangle).collect();
-    Geometry { shapes, bounds: Bounds::of_points(vertices.iter().copied()) }
+    let has_area = |face: &[u32; 3]| has_area(&face.map(|k| vertices[k as usize]));
+    faces.retain(has_area);
+    let bounds = Bounds::of_points(vertices.iter().copied());
+    Geometry { shapes: faces_of(vertices, faces), bounds }
 }

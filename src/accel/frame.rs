@@ -9,15 +9,15 @@ use glam::DVec3;
 
 use crate::{
     geometry::{Bounds, Ray},
-    math::{cross, scale},
+    math::scale,
 };
 
 /// By how much boxes are enlarged on every side. A quarter of it was just enough for a ray's roundings on adversarial
 /// rays (tangent, through vertices, along faces); the other three are margin.
 const BOX_PAD: f64 = 1.0 / (1 << 19) as f64;
 
-/// The radius of the ball about [−1, 1]³ at which rays from afar arrive: √3, rounded up with room for the pads.
-const BALL_RADIUS: f64 = 1.75;
+/// Rays from afar that pass the centre at a greater distance (squared) miss the ball about [−1, 1]³, whose radius is √3.
+const BALL_SQUARED: f64 = 3.05;
 
 /// How much later than computed an end may be, in the parameter of the tree's frame, for a ray that walked here.
 const ARRIVAL_SLACK: f64 = 1.0 / (1 << 20) as f64;
@@ -142,20 +142,24 @@ impl Frame {
     }
 }
 
-/// Where the line of a ray enters the ball about the frame, and its parameter there; `None` if it passes by or the ball
-/// is behind.
+/// A point of the line of a ray from afar between 1.74 and 2 from the centre, before the ball about the frame, and its
+/// parameter; `None` if the line passes by or the ball is behind.
 ///
-/// The foot of the perpendicular from the centre is d × (f × d) / d·d, whose products are exact to a few roundings of
-/// *itself*: however far away the ray starts, it arrives where it should. Source: Haines, Günther & Akenine-Möller,
-/// "Precision Improvements for Ray/Sphere Intersection", *Ray Tracing Gems* (2019), ch. 7.
+/// The foot of the perpendicular from the centre, o + t d, is as exact as the origin, as product and sum are rounded once:
+/// an error of t only moves it along the line. At the distance √f from the centre, it is y = 1.98 − f/3 beyond the point,
+/// which is outside the ball and not too far, as √(3.02 − f) ≤ y ≤ √(4 − f) for f up to [`BALL_SQUARED`].
 #[inline(always)]
 fn arrive(origin: DVec3, dir: DVec3) -> Option<(DVec3, f64)> {
     let a = dir.length_squared();
-    let foot = cross(dir, cross(origin, dir)) / a;
-    let chord = BALL_RADIUS * BALL_RADIUS - foot.length_squared();
-    let b = origin.dot(dir);
-    let half = (chord / a).sqrt();
-    (chord >= 0.0 && b < 0.0).then(|| (foot - dir * half, -b / a - half))
+    let t = -origin.dot(dir) / a;
+    let foot = DVec3::new(
+        dir.x.mul_add(t, origin.x),
+        dir.y.mul_add(t, origin.y),
+        dir.z.mul_add(t, origin.z),
+    );
+    let offset = foot.length_squared();
+    let step = (1.98 - offset * (1.0 / 3.0)) / a.sqrt();
+    (offset <= BALL_SQUARED && t > 0.0).then(|| (foot - dir * step, t - step))
 }
 
 impl TreeRay {
