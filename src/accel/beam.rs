@@ -141,6 +141,15 @@ impl Beam {
         slopes * (1.0 + self.axis.lead as f32)
     }
 
+    /// The lanes with slopes in the lower half of the side along which the beam is wider.
+    pub(super) fn half(&self, slopes: &[Singles; 2]) -> u64 {
+        let width = |side: usize| self.slopes[side][1] - self.slopes[side][0];
+        let side = usize::from(width(1) > width(0));
+        let [least, largest] = self.slopes[side];
+        let middle = f32::midpoint(least, largest);
+        (0..LANES).fold(0, |all, k| all | u64::from(slopes[side][k] < middle) << k)
+    }
+
     /// Which children of `node` the beam may meet within `limit` along its axis, and where it enters each.
     #[inline(always)]
     pub(super) fn test<S: Simd>(&self, simd: S, node: &Node, limit: f32) -> (u32, S::F) {

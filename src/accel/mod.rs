@@ -234,16 +234,13 @@ impl Accel {
         mut visit: impl FnMut(usize, u32, Crossing) -> ControlFlow<()>,
     ) -> u64 {
         let (opaque, visit) = (&opaque, &mut visit);
-        if let Some(blocked) =
-            self.dispatch(BlockedPacket { accel: self, rays, target, opaque, visit })
-        {
-            return blocked;
-        }
+        let (blocked, alone) =
+            self.dispatch(BlockedPacket { accel: self, rays, target, opaque, visit });
         let is_blocked = |k: usize| {
             let visit = |primitive, crossing| visit(k, primitive, crossing);
             u64::from(self.is_blocked(&rays.ray(k), 1.0, opaque, visit)) << k
         };
-        lanes(rays.used).map(is_blocked).fold(0, |all, lane| all | lane)
+        lanes(alone).map(is_blocked).fold(blocked, |all, lane| all | lane)
     }
 
     /// Calls `visit(primitive, crossing)` for every crossing with `0 < t < end`, in no order, until it breaks.

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 
-use super::{BLOCKED, FEWEST_LANES, Packet, Searches, has_lanes};
+use super::{Apart, BLOCKED, FEWEST_LANES, Packet, Searches, WIDEST, WIDEST_PART, has_lanes};
 use crate::{
     accel::{
         Accel, crossed,
@@ -24,7 +24,8 @@ const SLACK: f32 = 1.0 / (1 << 20) as f32;
 /// A ray that starts further from the light than this, in the tree's frame, is traced by itself.
 const FURTHEST: f64 = (1 << 26) as f64;
 
-/// The search for what blocks rays that end, at `t = 1`, in one point.
+/// The search for what blocks rays that end, at `t = 1`, in one point. If they are too far from each other, parts of them are traced
+/// together.
 pub(in crate::accel) struct BlockedPacket<'a, B, V> {
     pub(in crate::accel) accel: &'a Accel,
     pub(in crate::accel) rays: &'a RayLanes<'a>,
@@ -38,23 +39,53 @@ where
     B: Fn(u32) -> bool,
     V: FnMut(usize, u32, Crossing) -> ControlFlow<()>,
 {
-    /// The lanes that are blocked; `None` if the rays were not traced and each must be by itself.
-    type Output = Option<u64>;
+    /// The lanes that are blocked, and those whose rays were not traced: each must be by itself.
+    type Output = (u64, u64);
 
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) -> Option<u64> {
-        let Self { accel, rays, target, opaque, visit } = self;
-        let tree = accel.tree.as_ref()?;
-        // From the light to where they start, which is as far as they go in one unit.
-        let mut packet = Packet::new(tree, rays, target, -1.0, (1.0, SLACK), FURTHEST)?;
+    fn run<S: Simd>(mut self, simd: S) -> (u64, u64) {
+        let Some(tree) = &self.accel.tree else { return (0, self.rays.used) };
+        let (mut blocked, mut alone) = (0, 0);
+        // None is empty, so there are never more than lanes.
+        let (mut parts, mut count) = ([self.rays.used; LANES], 1);
+        let mut widest = WIDEST;
+        while count > 0 {
+            count -= 1;
+            let used = parts[count];
+            let part = RayLanes { used, ..*self.rays };
+            // From the light to where they start, which is as far as they go in one unit.
+            match Packet::new(tree, &part, self.target, -1.0, (1.0, SLACK), FURTHEST, widest) {
+                Ok(packet) => blocked |= self.trace(simd, tree, packet, &part),
+                Err(Apart::Wide(half)) if half != 0 && half != used => {
+                    let [most, dense] = WIDEST_PART;
+                    widest = most.min(dense / (self.accel.len() as f32).cbrt());
+                    (parts[count], parts[count + 1]) = (half, used & !half);
+                    count += 2;
+                }
+                Err(_) => alone |= used,
+            }
+        }
+        (blocked, alone)
+    }
+}
+
+impl<B, V> BlockedPacket<'_, B, V>
+where
+    B: Fn(u32) -> bool,
+    V: FnMut(usize, u32, Crossing) -> ControlFlow<()>,
+{
+    /// The lanes of a packet of `rays` that are blocked.
+    #[inline(always)]
+    fn trace<S: Simd>(&mut self, simd: S, tree: &Tree, mut packet: Packet, rays: &RayLanes) -> u64 {
+        let Self { accel, opaque, visit, .. } = self;
         let crossed = [[f64::NAN; LANES]; 2];
-        let mut blocks = Blocks { accel, tree, rays, opaque, visit, crossed };
+        let mut blocks = Blocks { accel, tree, rays, opaque: *opaque, visit: *visit, crossed };
         for place in accel.outside() {
             blocks.test(simd, &mut packet, place, rays.used);
         }
         packet.walk(simd, tree, &mut blocks);
         let blocked = |k: usize| u64::from(packet.limit[k] == BLOCKED) << k;
-        Some(rays.used & (0..LANES).fold(0, |all, k| all | blocked(k)))
+        rays.used & (0..LANES).fold(0, |all, k| all | blocked(k))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{FEWEST_LANES, Packet, Searches, Singles, has_lanes};
+use super::{FEWEST_LANES, Packet, Searches, Singles, WIDEST, has_lanes};
 use crate::{
     accel::{
         Accel,
@@ -36,8 +36,8 @@ impl Kernel for NearestPacket<'_> {
         let Self { accel, rays, hits } = self;
         let Some(tree) = &accel.tree else { return false };
         let origin = rays.origin.get(rays.used.trailing_zeros() as usize % LANES);
-        let Some(mut packet) =
-            Packet::new(tree, rays, origin, 1.0, (f64::INFINITY, 0.0), f64::INFINITY)
+        let end = (f64::INFINITY, 0.0);
+        let Ok(mut packet) = Packet::new(tree, rays, origin, 1.0, end, f64::INFINITY, WIDEST)
         else {
             return false;
         };

@@ -9,7 +9,11 @@ use super::{
     scenes::{KINDS, Random, awkward, quad, shape_of, sphere},
 };
 use crate::{
-    accel::{Accel, Isa, packet::NearestPacket, simd::dispatch},
+    accel::{
+        Accel, Isa,
+        packet::{BlockedPacket, NearestPacket},
+        simd::dispatch,
+    },
     geometry::{
         Crossing, Hit, Ray, Shape, Surface,
         lanes::{Departures, HitLanes, LANES, RayLanes, SurfaceLanes, Vectors, lanes},
@@ -201,6 +205,34 @@ fn packets_from_afar_agree_with_single_rays() {
     }
     assert!(hits > 20_000, "{hits} rays hit");
     assert!(whole * 10 > asked * 9, "{whole} of {asked} packets were traced as packets");
+}
+
+/// Oracle: the single rays. Shadow rays that keep together in four places are traced in parts, all of them.
+#[test]
+fn wide_shadows_are_traced_in_parts() {
+    let mut random = Random(4);
+    let balls = (0..1000).map(|_| sphere(random.point(), 0.05));
+    let accel = Accel::build(balls.collect());
+    let target = DVec3::new(0.1, -0.2, 3.0);
+    let corners = [(-0.6, -0.6), (-0.6, 0.6), (0.6, -0.6), (0.6, 0.6)];
+    let (mut origin, mut dir) = (Vectors::ZERO, Vectors::ZERO);
+    for k in 0..LANES {
+        let (x, y) = corners[k % 4];
+        let start = DVec3::new(x, y, -2.0) + random.direction() * 0.05;
+        origin.set(k, start);
+        dir.set(k, target - start);
+    }
+    let rays = &RayLanes { origin: &origin, dir: &dir, from: None, used: u64::MAX };
+    let go_on = |_: usize, _: u32, _: Crossing| ControlFlow::Continue(());
+    let (opaque, visit) = (&|_: u32| true, &mut { go_on });
+    let (blocked, alone) =
+        dispatch(accel.isa, BlockedPacket { accel: &accel, rays, target, opaque, visit });
+    assert_eq!(alone, 0, "rays by themselves");
+    let is_blocked =
+        |k: usize| accel.is_blocked(&rays.ray(k), 1.0, opaque, |_, _| ControlFlow::Continue(()));
+    let expected = (0..LANES).fold(0, |all, k| all | u64::from(is_blocked(k)) << k);
+    assert_eq!(blocked, expected);
+    assert!((8..56).contains(&blocked.count_ones()), "{blocked:b}");
 }
 
 /// Whether the rays are traced together rather than one by one.
