@@ -150,15 +150,10 @@ impl<T> Plane<T> {
     }
 
     /// Moves the values of `tile`, row by row, into their places.
-    pub(super) fn put(&mut self, tile: &Area, values: impl IntoIterator<Item = T>) {
-        let mut values = values.into_iter();
-        for y in tile.y0..tile.y1 {
+    pub(super) fn put(&mut self, tile: &Area, mut values: Vec<T>) {
+        for (y, row) in (tile.y0..tile.y1).zip(values.chunks_mut(tile.width())) {
             let start = self.area.place_of(tile.x0, y);
-            for (place, value) in
-                self.values[start..start + tile.width()].iter_mut().zip(values.by_ref())
-            {
-                *place = value;
-            }
+            self.values[start..start + row.len()].swap_with_slice(row);
         }
     }
 }
