@@ -3,12 +3,14 @@
 use std::ops::ControlFlow;
 
 use super::{
-    Accel, extreme,
+    Accel,
+    decide::triangle_crossing,
+    extreme,
     frame::Entry,
     leaf::{Candidates, LeafRay},
     node::Content,
     simd::{Kernel, Simd},
-    target::{Left, triangle_crossing},
+    target::Left,
     tree::Tree,
     walk::{Visitor, walk},
 };

@@ -9,6 +9,7 @@ pub mod brute;
 mod build;
 mod collapse;
 mod crossed;
+mod decide;
 mod division;
 mod extreme;
 mod frame;
@@ -274,7 +275,7 @@ impl Accel {
         if let Some(crossings) = study::crossings(self, ray, place) {
             return crossings;
         }
-        simd.crossings(&self.shapes[place], ray, self.numbers[place])
+        decide::crossings(simd, &self.shapes[place], ray, self.numbers[place])
     }
 
     /// The places of the primitives that are not in the tree.

@@ -1,12 +1,14 @@
 //! What a ray asks of the tree: the nearest hit.
 
 use super::{
-    Accel, extreme,
+    Accel,
+    decide::triangle_crossing,
+    extreme,
     frame::{Entry, TreeRay},
     leaf::{Candidates, LeafRay},
     node::Content,
     simd::{Kernel, Simd},
-    target::{Left, prefetch, triangle_crossing},
+    target::{Left, prefetch},
     tree::Tree,
     walk::{Visitor, walk},
 };

@@ -4,17 +4,6 @@
 //! `#[inline(always)]`, or the compiler builds them for the baseline and every operation becomes a call; then
 //! `f64::mul_add` in the shapes' own tests is an instruction too, with the same result as the library's function.
 
-use std::ops::Range;
-
-use glam::DVec3;
-
-use crate::geometry::{
-    Crossing, Ray, Shape,
-    hit::Crossings,
-    lanes::{Column, RayLanes},
-    triangle,
-};
-
 /// Which instructions the queries use; the answers do not depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
@@ -94,32 +83,8 @@ pub(super) trait Simd: Copy {
     /// Runs a kernel compiled for these instructions.
     fn vectorize<K: Kernel>(self, kernel: K) -> K::Output;
 
-    /// [`Shape::crossings_of`], compiled once for these instructions rather than into every kernel.
-    fn crossings(self, shape: &Shape, ray: &Ray, primitive: u32) -> Crossings;
-
-    /// [`Shape::cross_lanes`], likewise.
-    fn cross_lanes(
-        self,
-        shape: &Shape,
-        rays: &RayLanes,
-        lanes: Range<usize>,
-        crossed: &mut [Column; 2],
-    ) -> bool;
-
-    /// [`triangle::crossing`], likewise.
-    fn triangle_crossing(self, corners: &[DVec3; 3], ray: &Ray) -> Crossing;
-
-    /// [`triangle::certain_crossing`], likewise.
-    fn certain_crossing(self, corners: &[DVec3; 3], ray: &Ray) -> Crossing;
-
-    /// [`triangle::cross_lanes`], likewise.
-    fn triangle_lanes(
-        self,
-        corners: &[DVec3; 3],
-        rays: &RayLanes,
-        lanes: Range<usize>,
-        crossed: &mut [Column; 2],
-    );
+    /// The same, as a function of its own rather than a part of the caller.
+    fn apart<K: Kernel>(self, kernel: K) -> K::Output;
 
     /// Asks for the memory of `x`, which is needed soon.
     fn prefetch<T>(self, x: &T);
@@ -170,75 +135,13 @@ impl Simd for Portable {
         kernel.run(self)
     }
 
-    #[inline(always)]
-    fn crossings(self, shape: &Shape, ray: &Ray, primitive: u32) -> Crossings {
-        #[inline(never)]
-        fn compiled(shape: &Shape, ray: &Ray, primitive: u32) -> Crossings {
-            shape.crossings_of(ray, primitive)
-        }
-        compiled(shape, ray, primitive)
-    }
-
-    #[inline(always)]
-    fn triangle_crossing(self, corners: &[DVec3; 3], ray: &Ray) -> Crossing {
-        #[inline(never)]
-        fn compiled(corners: &[DVec3; 3], ray: &Ray) -> Crossing {
-            triangle::crossing(corners, ray)
-        }
-        compiled(corners, ray)
-    }
-
-    #[inline(always)]
-    fn certain_crossing(self, corners: &[DVec3; 3], ray: &Ray) -> Crossing {
-        #[inline(never)]
-        fn compiled(corners: &[DVec3; 3], ray: &Ray) -> Crossing {
-            triangle::certain_crossing(corners, ray)
-        }
-        compiled(corners, ray)
-    }
-
-    #[inline(always)]
-    fn triangle_lanes(
-        self,
-        corners: &[DVec3; 3],
-        rays: &RayLanes,
-        lanes: Range<usize>,
-        crossed: &mut [Column; 2],
-    ) {
-        #[inline(never)]
-        fn compiled(
-            corners: &[DVec3; 3],
-            rays: &RayLanes,
-            lanes: Range<usize>,
-            crossed: &mut [Column; 2],
-        ) {
-            triangle::cross_lanes(corners, rays, lanes, crossed);
-        }
-        compiled(corners, rays, lanes, crossed);
+    #[inline(never)]
+    fn apart<K: Kernel>(self, kernel: K) -> K::Output {
+        kernel.run(self)
     }
 
     #[inline(always)]
     fn prefetch<T>(self, _: &T) {}
-
-    #[inline(always)]
-    fn cross_lanes(
-        self,
-        shape: &Shape,
-        rays: &RayLanes,
-        lanes: Range<usize>,
-        crossed: &mut [Column; 2],
-    ) -> bool {
-        #[inline(never)]
-        fn compiled(
-            shape: &Shape,
-            rays: &RayLanes,
-            lanes: Range<usize>,
-            crossed: &mut [Column; 2],
-        ) -> bool {
-            shape.cross_lanes(rays, lanes, crossed)
-        }
-        compiled(shape, rays, lanes, crossed)
-    }
 
     #[inline(always)]
     fn splat(self, x: f32) -> Lanes {

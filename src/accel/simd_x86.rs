@@ -4,23 +4,11 @@
 //! loops, eight at a time.
 #![allow(unsafe_code, reason = "instructions that not every machine has")]
 
-use std::{
-    arch::x86_64::{
-        __m256, _CMP_LE_OQ, _MM_HINT_T0, _mm_prefetch, _mm256_add_ps, _mm256_and_ps, _mm256_cmp_ps,
-        _mm256_div_ps, _mm256_fmadd_ps, _mm256_fmsub_ps, _mm256_fnmadd_ps, _mm256_loadu_ps,
-        _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_set1_ps,
-        _mm256_sqrt_ps, _mm256_storeu_ps, _mm256_sub_ps, _mm256_xor_ps,
-    },
-    ops::Range,
-};
-
-use glam::DVec3;
-
-use crate::geometry::{
-    Crossing, Ray, Shape,
-    hit::Crossings,
-    lanes::{Column, RayLanes},
-    triangle,
+use std::arch::x86_64::{
+    __m256, _CMP_LE_OQ, _MM_HINT_T0, _mm_prefetch, _mm256_add_ps, _mm256_and_ps, _mm256_cmp_ps,
+    _mm256_div_ps, _mm256_fmadd_ps, _mm256_fmsub_ps, _mm256_fnmadd_ps, _mm256_loadu_ps,
+    _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_set1_ps,
+    _mm256_sqrt_ps, _mm256_storeu_ps, _mm256_sub_ps, _mm256_xor_ps,
 };
 
 #[cfg(test)]
@@ -72,80 +60,14 @@ macro_rules! instructions {
             }
 
             #[inline(always)]
-            fn crossings(self, shape: &Shape, ray: &Ray, primitive: u32) -> Crossings {
+            fn apart<K: Kernel>(self, kernel: K) -> K::Output {
                 #[target_feature(enable = $features)]
                 #[inline(never)]
-                fn compiled(shape: &Shape, ray: &Ray, primitive: u32) -> Crossings {
-                    shape.crossings_of(ray, primitive)
+                fn compiled<K: Kernel>(simd: $name, kernel: K) -> K::Output {
+                    kernel.run(simd)
                 }
                 // SAFETY: `self` proves that the machine has these features.
-                unsafe { compiled(shape, ray, primitive) }
-            }
-
-            #[inline(always)]
-            fn cross_lanes(
-                self,
-                shape: &Shape,
-                rays: &RayLanes,
-                lanes: Range<usize>,
-                crossed: &mut [Column; 2],
-            ) -> bool {
-                #[target_feature(enable = $features)]
-                #[inline(never)]
-                fn compiled(
-                    shape: &Shape,
-                    rays: &RayLanes,
-                    lanes: Range<usize>,
-                    crossed: &mut [Column; 2],
-                ) -> bool {
-                    shape.cross_lanes(rays, lanes, crossed)
-                }
-                // SAFETY: `self` proves that the machine has these features.
-                unsafe { compiled(shape, rays, lanes, crossed) }
-            }
-
-            #[inline(always)]
-            fn triangle_crossing(self, corners: &[DVec3; 3], ray: &Ray) -> Crossing {
-                #[target_feature(enable = $features)]
-                #[inline(never)]
-                fn compiled(corners: &[DVec3; 3], ray: &Ray) -> Crossing {
-                    triangle::crossing(corners, ray)
-                }
-                // SAFETY: `self` proves that the machine has these features.
-                unsafe { compiled(corners, ray) }
-            }
-
-            #[inline(always)]
-            fn certain_crossing(self, corners: &[DVec3; 3], ray: &Ray) -> Crossing {
-                #[target_feature(enable = $features)]
-                #[inline(never)]
-                fn compiled(corners: &[DVec3; 3], ray: &Ray) -> Crossing {
-                    triangle::certain_crossing(corners, ray)
-                }
-                // SAFETY: `self` proves that the machine has these features.
-                unsafe { compiled(corners, ray) }
-            }
-
-            #[inline(always)]
-            fn triangle_lanes(
-                self,
-                corners: &[DVec3; 3],
-                rays: &RayLanes,
-                lanes: Range<usize>,
-                crossed: &mut [Column; 2],
-            ) {
-                #[target_feature(enable = $features)]
-                #[inline(never)]
-                fn compiled(
-                    corners: &[DVec3; 3],
-                    rays: &RayLanes,
-                    lanes: Range<usize>,
-                    crossed: &mut [Column; 2],
-                ) {
-                    triangle::cross_lanes(corners, rays, lanes, crossed);
-                }
-                // SAFETY: `self` proves that the machine has these features.
-                unsafe { compiled(corners, rays, lanes, crossed) };
+                unsafe { compiled(self, kernel) }
             }
 
             #[inline(always)]

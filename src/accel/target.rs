@@ -1,9 +1,7 @@
 //! A primitive of a leaf that is to be decided in double precision, and the one that a ray leaves.
 
-use glam::DVec3;
-
 use super::{Accel, leaf::Candidates, simd::Simd, tree::Tree};
-use crate::geometry::{Crossing, Ray};
+use crate::geometry::Ray;
 
 /// Asks for the memory that a decision about the primitive in `place` needs.
 #[inline(always)]
@@ -13,19 +11,6 @@ pub(super) fn prefetch<S: Simd>(simd: S, accel: &Accel, tree: &Tree, place: u32)
         None => simd.prefetch(&accel.shapes[place as usize]),
     }
     simd.prefetch(&accel.numbers[place as usize]);
-}
-
-/// The crossing of `ray` with a triangle, which is crossed if `certain`; not the one that it leaves.
-#[inline(always)]
-pub(super) fn triangle_crossing<S: Simd>(
-    simd: S,
-    corners: &[DVec3; 3],
-    ray: &Ray,
-    certain: bool,
-) -> Crossing {
-    #[cfg(feature = "leaf-study")]
-    super::study::count_triangle();
-    if certain { simd.certain_crossing(corners, ray) } else { simd.triangle_crossing(corners, ray) }
 }
 
 /// The primitive that a ray leaves.

@@ -8,8 +8,8 @@ use super::{Apart, BLOCKED, FEWEST_LANES, Packet, Searches, WIDEST, WIDEST_PART,
 use crate::{
     accel::{
         Accel, crossed,
+        decide::{CrossedLanes, triangle_crossing},
         simd::{Kernel, Simd},
-        target::triangle_crossing,
         tree::Tree,
     },
     geometry::{
@@ -150,10 +150,9 @@ where
         let (number, shape) = (self.accel.numbers[place], &self.accel.shapes[place]);
         let own = self.rays.leaving(number);
         let (range, others) = (hull(met & !own), met & !own);
-        if others.count_ones() < FEWEST_LANES
-            || !has_lanes()
-            || !simd.cross_lanes(shape, self.rays, range.clone(), &mut self.crossed)
-        {
+        let tried =
+            CrossedLanes { rays: self.rays, lanes: range.clone(), crossed: &mut self.crossed };
+        if others.count_ones() < FEWEST_LANES || !has_lanes() || !tried.by_shape(simd, shape) {
             self.test_each(simd, packet, place, met);
             return;
         }

@@ -6,8 +6,9 @@ use super::{FEWEST_LANES, Packet, Searches, Singles, WIDEST, has_lanes};
 use crate::{
     accel::{
         Accel,
+        decide::{CrossedLanes, triangle_crossing},
         simd::{Kernel, Simd},
-        target::{prefetch, triangle_crossing},
+        target::prefetch,
         tree::Tree,
     },
     geometry::{
@@ -93,8 +94,14 @@ impl Nearest<'_> {
             return;
         }
         let range = hull(met);
-        simd.triangle_lanes(corners, self.rays, range.clone(), &mut self.crossed);
+        self.crossed(range.clone()).by_triangle(simd, corners);
         self.offer_lanes(packet, |_| number, range);
+    }
+
+    /// To be found: where the lanes of a range cross what is tried.
+    #[inline(always)]
+    fn crossed(&mut self, lanes: Range<usize>) -> CrossedLanes<'_> {
+        CrossedLanes { rays: self.rays, lanes, crossed: &mut self.crossed }
     }
 
     /// Takes the crossings of the lanes of a range, with the primitives of these numbers, that are better.
@@ -180,7 +187,7 @@ impl<S: Simd> Searches<S> for Nearest<'_> {
         let range = hull(met);
         if met.count_ones() < FEWEST_LANES
             || !has_lanes()
-            || !simd.cross_lanes(shape, self.rays, range.clone(), &mut self.crossed)
+            || !self.crossed(range.clone()).by_shape(simd, shape)
         {
             for k in lanes(met) {
                 for crossing in self.accel.crossings(simd, &self.rays.ray(k), place) {

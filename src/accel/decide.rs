@@ -1,0 +1,120 @@
+//! The shapes' own tests in double precision, compiled once for each instruction set rather than into every search.
+
+use std::ops::Range;
+
+use glam::DVec3;
+
+use super::simd::{Kernel, Simd};
+use crate::geometry::{
+    Crossing, Ray, Shape,
+    hit::Crossings,
+    lanes::{Column, RayLanes},
+    triangle,
+};
+
+/// [`Shape::crossings_of`].
+#[inline(always)]
+pub(super) fn crossings<S: Simd>(simd: S, shape: &Shape, ray: &Ray, primitive: u32) -> Crossings {
+    simd.apart(ShapeTest { shape, ray, primitive })
+}
+
+struct ShapeTest<'a> {
+    shape: &'a Shape,
+    ray: &'a Ray,
+    primitive: u32,
+}
+
+impl Kernel for ShapeTest<'_> {
+    type Output = Crossings;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) -> Crossings {
+        self.shape.crossings_of(self.ray, self.primitive)
+    }
+}
+
+/// [`triangle::crossing`], or, of a triangle that is certainly crossed, [`triangle::certain_crossing`].
+#[inline(always)]
+pub(super) fn triangle_crossing<S: Simd>(
+    simd: S,
+    corners: &[DVec3; 3],
+    ray: &Ray,
+    certain: bool,
+) -> Crossing {
+    #[cfg(feature = "leaf-study")]
+    super::study::count_triangle();
+    if certain {
+        simd.apart(TriangleTest::<true> { corners, ray })
+    } else {
+        simd.apart(TriangleTest::<false> { corners, ray })
+    }
+}
+
+struct TriangleTest<'a, const CERTAIN: bool> {
+    corners: &'a [DVec3; 3],
+    ray: &'a Ray,
+}
+
+impl<const CERTAIN: bool> Kernel for TriangleTest<'_, CERTAIN> {
+    type Output = Crossing;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) -> Crossing {
+        if CERTAIN {
+            triangle::certain_crossing(self.corners, self.ray)
+        } else {
+            triangle::crossing(self.corners, self.ray)
+        }
+    }
+}
+
+/// Where some `lanes` of rays are crossed.
+pub(super) struct CrossedLanes<'a> {
+    pub(super) rays: &'a RayLanes<'a>,
+    pub(super) lanes: Range<usize>,
+    pub(super) crossed: &'a mut [Column; 2],
+}
+
+impl CrossedLanes<'_> {
+    /// [`Shape::cross_lanes`].
+    #[inline(always)]
+    pub(super) fn by_shape<S: Simd>(self, simd: S, shape: &Shape) -> bool {
+        simd.apart(ShapeLanes { shape, of: self })
+    }
+
+    /// [`triangle::cross_lanes`].
+    #[inline(always)]
+    pub(super) fn by_triangle<S: Simd>(self, simd: S, corners: &[DVec3; 3]) {
+        simd.apart(TriangleLanes { corners, of: self });
+    }
+}
+
+struct ShapeLanes<'a> {
+    shape: &'a Shape,
+    of: CrossedLanes<'a>,
+}
+
+impl Kernel for ShapeLanes<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) -> bool {
+        let CrossedLanes { rays, lanes, crossed } = self.of;
+        self.shape.cross_lanes(rays, lanes, crossed)
+    }
+}
+
+struct TriangleLanes<'a> {
+    corners: &'a [DVec3; 3],
+    of: CrossedLanes<'a>,
+}
+
+impl Kernel for TriangleLanes<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) {
+        let CrossedLanes { rays, lanes, crossed } = self.of;
+        triangle::cross_lanes(self.corners, rays, lanes, crossed);
+    }
+}
