@@ -10,6 +10,7 @@ mod blocked;
 mod boxes;
 mod eye;
 mod nearest;
+mod walk;
 
 use glam::DVec3;
 
@@ -17,16 +18,13 @@ use glam::DVec3;
 use super::frame::TreeRay;
 use super::{
     beam::{Axis, Beam, Singles},
-    leaf::{Candidates, LeafRay},
-    node::{Child, Content},
+    leaf::LeafRay,
     simd::Simd,
     tree::Tree,
-    walk::MAX_DEPTH,
 };
-use crate::geometry::lanes::{Column, LANES, RayLanes, lanes};
+use crate::geometry::lanes::{Column, LANES, RayLanes};
 pub(super) use blocked::BlockedPacket;
 use boxes::Prepared;
-use eye::Eye;
 pub(super) use nearest::NearestPacket;
 
 /// Rays that are tested by one instruction.
@@ -38,18 +36,12 @@ const FEWEST: u32 = 8;
 /// Fewer lanes than this are as fast one by one where a primitive is tried.
 const FEWEST_LANES: u32 = 3;
 
-/// Fewer rays than this are as fast one by one where the triangles of a leaf are tried.
-const FEWEST_SEEING: u32 = 20;
-
 /// A wider beam, at distance 1 in units of half the scene, meets too much that no ray of it does.
 const WIDEST: f32 = 0.25;
 
 /// So does a wider part of a beam that was too wide: in small scenes, and times the cube root of the number of primitives in
 /// large ones. Widths up to twice and down to half as large make no difference that could be measured.
 const WIDEST_PART: [f32; 2] = [0.12, 2.6];
-
-/// The stack of the walk: each node on the way down leaves at most seven of its children to be visited later.
-const STACK: usize = MAX_DEPTH * 7 + 1;
 
 /// The limit of a lane that is not in use, or whose ray passes the tree by.
 const ASIDE: f32 = -1.0;
@@ -60,18 +52,6 @@ const BLOCKED: f32 = -2.0;
 /// How far corners may be from where a ray begins, which is at most 4 to either side of the tree: twice as far as for a single ray, and
 /// so are the errors.
 const REACH: f32 = 8.0;
-
-/// A child to be visited: where the beam enters it, what it is, and its box (node and slot), if it has one.
-#[derive(Clone, Copy)]
-struct Visit {
-    enter: f32,
-    child: Child,
-    node: u32,
-    slot: u32,
-}
-
-/// The node of what has no box: a tree of one leaf.
-const NO_NODE: u32 = u32::MAX;
 
 /// The rays of a packet in the tree's frame, as lines along their axis, and the beam about them.
 struct Packet {
@@ -196,127 +176,6 @@ impl Packet {
     fn slopes(&self) -> [&Singles; 2] {
         let [_, right, up] = self.axis.order;
         [&self.dir[right], &self.dir[up]]
-    }
-
-    /// Has `searches` try the primitives of a leaf with the rays of the lanes `met`.
-    #[inline(always)]
-    fn leaf<S: Simd>(
-        &mut self,
-        simd: S,
-        tree: &Tree,
-        searches: &mut impl Searches<S>,
-        met: u64,
-        prepared: &Prepared,
-        leaf: Content,
-    ) {
-        match leaf {
-            Content::Spheres(run) => {
-                for k in lanes(met) {
-                    let (ray, limit) = (self.leaf_ray(prepared, k), self.limit[k]);
-                    let candidates = tree.spheres.sort_out(simd, run, &ray, limit);
-                    self.take(simd, searches, k, run.first, &candidates);
-                }
-            }
-            Content::Triangles(run) => {
-                for k in lanes(met) {
-                    let (ray, limit) = (self.leaf_ray(prepared, k), self.limit[k]);
-                    let candidates = tree.triangles.sort_out(simd, run, &ray, limit);
-                    self.take(simd, searches, k, run.first, &candidates);
-                }
-            }
-            Content::One(place) if met != 0 => searches.test(simd, self, place, met),
-            Content::One(_) | Content::Node(_) => {}
-        }
-    }
-
-    /// Has `searches` take the candidates of a leaf, whose primitives start at `first`, for the ray of lane `k`.
-    #[inline(always)]
-    fn take<S: Simd>(
-        &mut self,
-        simd: S,
-        searches: &mut impl Searches<S>,
-        k: usize,
-        first: u32,
-        candidates: &Candidates,
-    ) {
-        let Candidates { maybe, certain, from, to } = candidates;
-        let mut maybe = *maybe;
-        while maybe != 0 {
-            let lane = (maybe.trailing_zeros() & 7) as usize;
-            maybe &= maybe - 1;
-            let bounds = [from.0[lane], to.0[lane]];
-            let certain = (certain >> lane & 1 != 0).then_some(bounds);
-            searches.take(simd, self, k, first + lane as u32, certain);
-        }
-    }
-
-    /// How deep any ray still searches.
-    #[inline(always)]
-    fn deepest(&self) -> f32 {
-        // In eight parts, each a lane of vectors.
-        let mut ends = [f32::NEG_INFINITY; GROUP];
-        for start in (0..LANES).step_by(GROUP) {
-            for (part, end) in ends.iter_mut().enumerate() {
-                let other = self.limit[start + part];
-                *end = if other > *end { other } else { *end };
-            }
-        }
-        ends.into_iter().fold(f32::NEG_INFINITY, f32::max)
-    }
-
-    /// Shows `searches` the leaves that a ray of the packet may meet.
-    #[inline(always)]
-    fn walk<S: Simd>(&mut self, simd: S, tree: &Tree, searches: &mut impl Searches<S>) {
-        let mut stack = [Visit { enter: 0.0, child: Child::NONE, node: 0, slot: 0 }; STACK];
-        let mut len = 0;
-        let mut limit = self.deepest();
-        // Many packets meet no leaf.
-        let (is_eye, mut eye, mut prepared) = (Eye::is_for(tree, &self.axis), None, None);
-        let mut visit = Visit { enter: 0.0, child: tree.root, node: NO_NODE, slot: 0 };
-        loop {
-            if let Content::Node(k) = visit.child.content() {
-                #[cfg(feature = "leaf-study")]
-                crate::accel::study::count_beam();
-                let (mut met, enter) = self.beam.test(simd, &tree.nodes[k], limit);
-                let enter = simd.store(enter).0;
-                let base = len;
-                while met != 0 {
-                    let slot = (met.trailing_zeros() & 7) as usize;
-                    met &= met - 1;
-                    let child = tree.nodes[k].children[slot];
-                    tree.prefetch(simd, child);
-                    let next =
-                        Visit { enter: enter[slot], child, node: k as u32, slot: slot as u32 };
-                    // Nearer children on top.
-                    let mut place = len;
-                    while place > base && stack[place - 1].enter < next.enter {
-                        stack[place] = stack[place - 1];
-                        place -= 1;
-                    }
-                    stack[place] = next;
-                    len += 1;
-                }
-            } else {
-                let prepared = prepared.get_or_insert_with(|| self.prepared());
-                let met = self.meet(simd, tree, &visit, prepared);
-                match visit.child.content() {
-                    Content::Triangles(run) if is_eye && met.count_ones() >= FEWEST_SEEING => {
-                        let eye = eye.get_or_insert_with(|| Eye::of(self));
-                        eye.leaf(simd, tree, self, searches, run, met);
-                    }
-                    leaf => self.leaf(simd, tree, searches, met, prepared, leaf),
-                }
-                limit = self.deepest();
-            }
-            loop {
-                let Some(last) = len.checked_sub(1) else { return };
-                len = last;
-                if stack[last].enter <= limit {
-                    visit = stack[last];
-                    break;
-                }
-            }
-        }
     }
 }
 
