@@ -174,22 +174,12 @@ where
                 return self.stopped;
             }
         }
-        self.stopped = match leaf {
-            Content::Spheres(run) => {
-                let spheres = &self.tree.spheres;
-                let mut candidates = spheres.sort_out(simd, run, &self.leaf_ray, self.limit);
-                self.left.settle_round(run.first, &mut candidates);
-                self.take(simd, run.first, &candidates)
-            }
-            Content::Triangles(run) => {
-                let triangles = &self.tree.triangles;
-                let mut candidates = triangles.sort_out(simd, run, &self.leaf_ray, self.limit);
-                self.left.settle_flat(run.first, &mut candidates);
-                self.take(simd, run.first, &candidates)
-            }
-            Content::One(place) => self.test.test(simd, place),
-            Content::Node(_) => false,
-        };
+        let (ray, limit) = (&self.leaf_ray, self.limit);
+        if let Some((first, candidates)) = self.left.sort_out(simd, self.tree, leaf, ray, limit) {
+            self.stopped = self.take(simd, first, &candidates);
+        } else if let Content::One(place) = leaf {
+            self.stopped = self.test.test(simd, place);
+        }
         self.stopped
     }
 }

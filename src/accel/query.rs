@@ -224,21 +224,11 @@ impl<S: Simd> Visitor<S> for Search<'_> {
                 });
             }
         }
-        match leaf {
-            Content::Spheres(run) => {
-                let spheres = &self.tree.spheres;
-                let mut candidates = spheres.sort_out(simd, run, &self.leaf_ray, self.limit);
-                self.left.settle_round(run.first, &mut candidates);
-                self.take(simd, run.first, &candidates);
-            }
-            Content::Triangles(run) => {
-                let triangles = &self.tree.triangles;
-                let mut candidates = triangles.sort_out(simd, run, &self.leaf_ray, self.limit);
-                self.left.settle_flat(run.first, &mut candidates);
-                self.take(simd, run.first, &candidates);
-            }
-            Content::One(place) => self.test(simd, place as u32),
-            Content::Node(_) => {}
+        let (ray, limit) = (&self.leaf_ray, self.limit);
+        if let Some((first, candidates)) = self.left.sort_out(simd, self.tree, leaf, ray, limit) {
+            self.take(simd, first, &candidates);
+        } else if let Content::One(place) = leaf {
+            self.test(simd, place as u32);
         }
         false
     }
