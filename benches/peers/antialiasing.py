@@ -25,6 +25,7 @@ parser.add_argument('--rounds', type=int, default=3)
 parser.add_argument('--threads', type=int, default=1)
 parser.add_argument('--out', default='.', help='folder for antialiasing.csv and antialiasing.md')
 options = parser.parse_args()
+os.makedirs(options.out, exist_ok=True)  # now, not after all is measured
 Image.MAX_IMAGE_PIXELS = None
 
 

@@ -26,6 +26,7 @@ parser.add_argument('--meshes', nargs='*', default=['icos:1000:3'], help='icos:N
 parser.add_argument('--threads', nargs='*', type=int, default=[1, 2])
 parser.add_argument('--out', default='.', help='folder for peers.csv and peers.md')
 options = parser.parse_args()
+os.makedirs(options.out, exist_ok=True)  # now, not after all is measured
 
 
 def run(command, **kw):
