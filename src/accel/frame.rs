@@ -142,7 +142,7 @@ impl Frame {
     }
 }
 
-/// A point of the line of a ray from afar between 1.74 and 2 from the centre, before the ball about the frame, and its
+/// A point of the line of a ray from afar between 1.92 and 2 from the centre, before the ball about the frame, and its
 /// parameter; `None` if the line passes by or the ball is behind.
 ///
 /// The foot of the perpendicular from the centre, o + t d, is as exact as the origin, as product and sum are rounded once:
