@@ -15,7 +15,7 @@ use crate::geometry::{
 /// [`Shape::crossings_of`].
 #[inline(always)]
 pub(super) fn crossings<S: Simd>(simd: S, shape: &Shape, ray: &Ray, primitive: u32) -> Crossings {
-    simd.apart(ShapeTest { shape, ray, primitive })
+    simd.vectorize(ShapeTest { shape, ray, primitive })
 }
 
 struct ShapeTest<'a> {
@@ -44,9 +44,9 @@ pub(super) fn triangle_crossing<S: Simd>(
     #[cfg(feature = "leaf-study")]
     super::study::count_triangle();
     if certain {
-        simd.apart(TriangleTest::<true> { corners, ray })
+        simd.vectorize(TriangleTest::<true> { corners, ray })
     } else {
-        simd.apart(TriangleTest::<false> { corners, ray })
+        simd.vectorize(TriangleTest::<false> { corners, ray })
     }
 }
 
@@ -68,30 +68,23 @@ impl<const CERTAIN: bool> Kernel for TriangleTest<'_, CERTAIN> {
     }
 }
 
-/// Where some `lanes` of rays are crossed.
-pub(super) struct CrossedLanes<'a> {
-    pub(super) rays: &'a RayLanes<'a>,
-    pub(super) lanes: Range<usize>,
-    pub(super) crossed: &'a mut [Column; 2],
-}
-
-impl CrossedLanes<'_> {
-    /// [`Shape::cross_lanes`].
-    #[inline(always)]
-    pub(super) fn by_shape<S: Simd>(self, simd: S, shape: &Shape) -> bool {
-        simd.apart(ShapeLanes { shape, of: self })
-    }
-
-    /// [`triangle::cross_lanes`].
-    #[inline(always)]
-    pub(super) fn by_triangle<S: Simd>(self, simd: S, corners: &[DVec3; 3]) {
-        simd.apart(TriangleLanes { corners, of: self });
-    }
+/// [`Shape::cross_lanes`].
+#[inline(always)]
+pub(super) fn cross_lanes<S: Simd>(
+    simd: S,
+    shape: &Shape,
+    rays: &RayLanes,
+    lanes: Range<usize>,
+    crossed: &mut [Column; 2],
+) -> bool {
+    simd.vectorize(ShapeLanes { shape, rays, lanes, crossed })
 }
 
 struct ShapeLanes<'a> {
     shape: &'a Shape,
-    of: CrossedLanes<'a>,
+    rays: &'a RayLanes<'a>,
+    lanes: Range<usize>,
+    crossed: &'a mut [Column; 2],
 }
 
 impl Kernel for ShapeLanes<'_> {
@@ -99,14 +92,27 @@ impl Kernel for ShapeLanes<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, _: S) -> bool {
-        let CrossedLanes { rays, lanes, crossed } = self.of;
-        self.shape.cross_lanes(rays, lanes, crossed)
+        self.shape.cross_lanes(self.rays, self.lanes, self.crossed)
     }
+}
+
+/// [`triangle::cross_lanes`].
+#[inline(always)]
+pub(super) fn triangle_lanes<S: Simd>(
+    simd: S,
+    corners: &[DVec3; 3],
+    rays: &RayLanes,
+    lanes: Range<usize>,
+    crossed: &mut [Column; 2],
+) {
+    simd.vectorize(TriangleLanes { corners, rays, lanes, crossed });
 }
 
 struct TriangleLanes<'a> {
     corners: &'a [DVec3; 3],
-    of: CrossedLanes<'a>,
+    rays: &'a RayLanes<'a>,
+    lanes: Range<usize>,
+    crossed: &'a mut [Column; 2],
 }
 
 impl Kernel for TriangleLanes<'_> {
@@ -114,7 +120,6 @@ impl Kernel for TriangleLanes<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, _: S) {
-        let CrossedLanes { rays, lanes, crossed } = self.of;
-        triangle::cross_lanes(self.corners, rays, lanes, crossed);
+        triangle::cross_lanes(self.corners, self.rays, self.lanes, self.crossed);
     }
 }

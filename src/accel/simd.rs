@@ -80,11 +80,8 @@ pub(super) trait Simd: Copy {
     #[cfg(test)]
     const ISA: Isa;
 
-    /// Runs a kernel compiled for these instructions.
+    /// Runs a kernel, as a function of its own that is compiled for these instructions.
     fn vectorize<K: Kernel>(self, kernel: K) -> K::Output;
-
-    /// The same, as a function of its own rather than a part of the caller.
-    fn apart<K: Kernel>(self, kernel: K) -> K::Output;
 
     /// Asks for the memory of `x`, which is needed soon.
     fn prefetch<T>(self, x: &T);
@@ -130,13 +127,8 @@ impl Simd for Portable {
     #[cfg(test)]
     const ISA: Isa = Isa::Portable;
 
-    #[inline(always)]
-    fn vectorize<K: Kernel>(self, kernel: K) -> K::Output {
-        kernel.run(self)
-    }
-
     #[inline(never)]
-    fn apart<K: Kernel>(self, kernel: K) -> K::Output {
+    fn vectorize<K: Kernel>(self, kernel: K) -> K::Output {
         kernel.run(self)
     }
 

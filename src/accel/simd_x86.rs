@@ -52,16 +52,6 @@ macro_rules! instructions {
             #[inline(always)]
             fn vectorize<K: Kernel>(self, kernel: K) -> K::Output {
                 #[target_feature(enable = $features)]
-                fn compiled<K: Kernel>(simd: $name, kernel: K) -> K::Output {
-                    kernel.run(simd)
-                }
-                // SAFETY: `self` proves that the machine has these features.
-                unsafe { compiled(self, kernel) }
-            }
-
-            #[inline(always)]
-            fn apart<K: Kernel>(self, kernel: K) -> K::Output {
-                #[target_feature(enable = $features)]
                 #[inline(never)]
                 fn compiled<K: Kernel>(simd: $name, kernel: K) -> K::Output {
                     kernel.run(simd)

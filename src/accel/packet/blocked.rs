@@ -4,11 +4,11 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 
-use super::{Apart, BLOCKED, FEWEST_LANES, Packet, Searches, WIDEST, WIDEST_PART, has_lanes};
+use super::{Apart, BLOCKED, FEWEST_LANES, Packet, Searches, WIDEST, has_lanes};
 use crate::{
     accel::{
         Accel, crossed,
-        decide::{CrossedLanes, triangle_crossing},
+        decide::{cross_lanes, triangle_crossing},
         simd::{Kernel, Simd},
         tree::Tree,
     },
@@ -23,6 +23,10 @@ const SLACK: f32 = 1.0 / (1 << 20) as f32;
 
 /// A ray that starts further from the light than this, in the tree's frame, is traced by itself.
 const FURTHEST: f64 = (1 << 26) as f64;
+
+/// A part of a beam that was too wide meets too much if it is wider than the first or, times the cube root of the number of
+/// primitives, than the second.
+const WIDEST_PART: [f32; 2] = [0.12, 2.6];
 
 /// The search for what blocks rays that end, at `t = 1`, in one point. If they are too far from each other, parts of them are traced
 /// together.
@@ -48,6 +52,7 @@ where
         let (mut blocked, mut alone) = (0, 0);
         // None is empty, so there are never more than lanes.
         let (mut parts, mut count) = ([self.rays.used; LANES], 1);
+        let [most, dense] = WIDEST_PART;
         let mut widest = WIDEST;
         while count > 0 {
             count -= 1;
@@ -57,7 +62,6 @@ where
             match Packet::new(tree, &part, self.target, -1.0, (1.0, SLACK), FURTHEST, widest) {
                 Ok(packet) => blocked |= self.trace(simd, tree, packet, &part),
                 Err(Apart::Wide(half)) if half != 0 && half != used => {
-                    let [most, dense] = WIDEST_PART;
                     widest = most.min(dense / (self.accel.len() as f32).cbrt());
                     (parts[count], parts[count + 1]) = (half, used & !half);
                     count += 2;
@@ -150,9 +154,10 @@ where
         let (number, shape) = (self.accel.numbers[place], &self.accel.shapes[place]);
         let own = self.rays.leaving(number);
         let (range, others) = (hull(met & !own), met & !own);
-        let tried =
-            CrossedLanes { rays: self.rays, lanes: range.clone(), crossed: &mut self.crossed };
-        if others.count_ones() < FEWEST_LANES || !has_lanes() || !tried.by_shape(simd, shape) {
+        if others.count_ones() < FEWEST_LANES
+            || !has_lanes()
+            || !cross_lanes(simd, shape, self.rays, range.clone(), &mut self.crossed)
+        {
             self.test_each(simd, packet, place, met);
             return;
         }

@@ -39,9 +39,6 @@ const FEWEST_LANES: u32 = 3;
 /// A wider beam, at distance 1 in units of half the scene, meets too much that no ray of it does.
 const WIDEST: f32 = 0.25;
 
-/// So does a part of such a beam that is wider than the first or, times the cube root of the number of primitives, than the second.
-const WIDEST_PART: [f32; 2] = [0.12, 2.6];
-
 /// The limit of a lane that is not in use, or whose ray passes the tree by.
 const ASIDE: f32 = -1.0;
 

@@ -6,7 +6,7 @@ use super::{FEWEST_LANES, Packet, Searches, Singles, WIDEST, has_lanes};
 use crate::{
     accel::{
         Accel,
-        decide::{CrossedLanes, triangle_crossing},
+        decide::{cross_lanes, triangle_crossing, triangle_lanes},
         simd::{Kernel, Simd},
         target::prefetch,
         tree::Tree,
@@ -94,14 +94,8 @@ impl Nearest<'_> {
             return;
         }
         let range = hull(met);
-        self.crossed(range.clone()).by_triangle(simd, corners);
+        triangle_lanes(simd, corners, self.rays, range.clone(), &mut self.crossed);
         self.offer_lanes(packet, |_| number, range);
-    }
-
-    /// To be found: where the lanes of a range cross what is tried.
-    #[inline(always)]
-    fn crossed(&mut self, lanes: Range<usize>) -> CrossedLanes<'_> {
-        CrossedLanes { rays: self.rays, lanes, crossed: &mut self.crossed }
     }
 
     /// Takes the crossings of the lanes of a range, with the primitives of these numbers, that are better.
@@ -187,7 +181,7 @@ impl<S: Simd> Searches<S> for Nearest<'_> {
         let range = hull(met);
         if met.count_ones() < FEWEST_LANES
             || !has_lanes()
-            || !self.crossed(range.clone()).by_shape(simd, shape)
+            || !cross_lanes(simd, shape, self.rays, range.clone(), &mut self.crossed)
         {
             for k in lanes(met) {
                 for crossing in self.accel.crossings(simd, &self.rays.ray(k), place) {
