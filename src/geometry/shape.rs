@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3, Vec3};
 use thiserror::Error;
 
 use super::{
-    Bounds, Cone, Cylinder, Face, Polygon, Quad, Similarity, Sphere, Triangle, flat,
+    Bounds, Cone, Cylinder, Face, Inward, Polygon, Quad, Similarity, Sphere, Triangle, flat,
     hit::{Crossing, Crossings, Hit, NO_CROSSINGS, Surface, first_ahead},
     lanes::{Column, LANES, RayLanes, SurfaceLanes, hull, lanes},
     ray::{Departure, Ray},
@@ -32,6 +32,8 @@ pub enum Shape {
     Polygon(Box<Polygon>),
     /// A triangle of a mesh.
     Face(Face),
+    /// Any of them, seen from inside only.
+    Inward(Box<Inward>),
 }
 
 /// Why a shape cannot be made.
@@ -129,6 +131,7 @@ impl Shape {
             Self::Triangle(s) => s.bounds(),
             Self::Polygon(s) => s.bounds(),
             Self::Face(s) => s.bounds(),
+            Self::Inward(s) => s.bounds(),
         }
     }
 
@@ -143,6 +146,7 @@ impl Shape {
             Self::Triangle(s) => s.mapped(map).into(),
             Self::Polygon(s) => s.mapped(map).into(),
             Self::Face(s) => s.mapped(map).into(),
+            Self::Inward(s) => s.mapped(map).into(),
         }
     }
 
@@ -157,6 +161,7 @@ impl Shape {
             Self::Triangle(s) => s.crossings(ray),
             Self::Polygon(s) => s.crossings(ray),
             Self::Face(s) => s.crossings(ray),
+            Self::Inward(s) => s.crossings(ray),
         }
     }
 
@@ -170,6 +175,7 @@ impl Shape {
             Self::Sphere(_) => Sphere::crossings_from(ray, from),
             Self::Cylinder(s) => s.crossings_from(ray, from),
             Self::Cone(s) => s.crossings_from(ray, from),
+            Self::Inward(s) => s.crossings_from(ray, from),
             Self::Quad(_) | Self::Triangle(_) | Self::Polygon(_) | Self::Face(_) => NO_CROSSINGS,
         }
     }
@@ -276,7 +282,13 @@ impl Shape {
 
     /// As [`surface`](Self::surface), for a ray from this shape (`own`) or from its origin plus `rest`.
     #[inline(always)]
-    fn surface_at(&self, ray: &Ray, hit: &Hit, own: Option<&Departure>, rest: DVec3) -> Surface {
+    pub(super) fn surface_at(
+        &self,
+        ray: &Ray,
+        hit: &Hit,
+        own: Option<&Departure>,
+        rest: DVec3,
+    ) -> Surface {
         match self {
             Self::Sphere(s) => s.surface(ray, hit.t, own),
             Self::Cylinder(s) => s.surface(ray, hit.t, hit.face, own),
@@ -285,6 +297,7 @@ impl Shape {
             Self::Triangle(s) => s.surface(ray, hit.t, rest),
             Self::Polygon(s) => s.surface(ray, hit.t, rest),
             Self::Face(s) => s.surface(ray, hit.t, rest),
+            Self::Inward(s) => s.surface(ray, hit, own),
         }
     }
 
@@ -300,9 +313,14 @@ impl Shape {
         (direct, same.min_by(|a, b| near(a, b)).map(|c| c.t))
     }
 
+    /// The shape as it is seen from both sides.
+    pub(crate) fn both_sided(&self) -> &Self {
+        if let Self::Inward(s) = self { s.shape().both_sided() } else { self }
+    }
+
     /// Whether [`Surface::uv`] means anything on this shape.
     pub fn has_uv(&self) -> bool {
-        match self {
+        match self.both_sided() {
             Self::Sphere(_) | Self::Quad(_) => true,
             Self::Face(s) => s.has_uv(),
             _ => false,
@@ -320,7 +338,7 @@ impl Shape {
 
     /// The axis and radius of a round shape, which is all within that radius of its axis; flat shapes have none.
     pub(crate) fn axis(&self) -> Option<([DVec3; 2], f64)> {
-        match self {
+        match self.both_sided() {
             Self::Sphere(s) => Some(([s.center(); 2], s.radius())),
             Self::Cylinder(s) => Some((s.axis_points(), s.radius())),
             Self::Cone(s) => Some((s.axis_points(), s.radius())),
@@ -338,6 +356,7 @@ impl Shape {
             Self::Triangle(s) => s.vertices().into_iter().for_each(visit),
             Self::Polygon(s) => s.vertices().iter().copied().for_each(visit),
             Self::Face(s) => s.vertices().into_iter().for_each(visit),
+            Self::Inward(s) => s.shape().for_each_point(visit),
         }
     }
 
@@ -366,4 +385,4 @@ macro_rules! into_shape {
         }
     )* };
 }
-into_shape!(Sphere, Cylinder, Cone, Quad, Triangle, Polygon, Face);
+into_shape!(Sphere, Cylinder, Cone, Quad, Triangle, Polygon, Face, Inward);

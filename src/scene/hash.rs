@@ -118,6 +118,10 @@ impl Hash {
                 });
                 self.count(corners);
             }
+            Shape::Inward(inward) => {
+                self.put(b"i");
+                self.shape(inward.shape(), last_mesh);
+            }
             Shape::Cylinder(_) | Shape::Cone(_) => self.text(&format_args!("{shape:?}")),
         }
     }

@@ -79,9 +79,8 @@ pub fn inspect_scene(name: &str) -> Result<SceneReport, SceneError> {
     })
 }
 
-/// The kinds of shapes and their numbers, those that there are.
-fn shapes(parts: &Parts) -> Vec<(&'static str, usize)> {
-    let kind = |shape: &Shape| match shape {
+fn kind(shape: &Shape) -> &'static str {
+    match shape {
         Shape::Sphere(_) => "spheres",
         Shape::Cylinder(_) => "cylinders",
         Shape::Cone(_) => "cones",
@@ -89,7 +88,12 @@ fn shapes(parts: &Parts) -> Vec<(&'static str, usize)> {
         Shape::Triangle(_) => "triangles",
         Shape::Polygon(_) => "polygons",
         Shape::Face(_) => "faces",
-    };
+        Shape::Inward(s) => kind(s.shape()),
+    }
+}
+
+/// The kinds of shapes and their numbers, those that there are.
+fn shapes(parts: &Parts) -> Vec<(&'static str, usize)> {
     let mut counts: Vec<(&str, usize)> =
         ["spheres", "cylinders", "cones", "quads", "triangles", "polygons", "faces"]
             .map(|kind| (kind, 0))

@@ -60,17 +60,22 @@ impl<'a> ClassicTracer<'a> {
             let hit = self.scene.accel().nearest(&ray, f64::INFINITY)?;
             let surface = self.scene.surface(&ray, &hit);
             let front = surface.normal.dot(ray.dir) < 0.0;
-            if front || self.is_two_sided(hit.primitive) {
+            if front || self.is_seen(hit.primitive) {
                 return Some((hit, surface));
             }
             ray = surface.leave(&hit, ray.dir, false);
         }
     }
 
-    /// Whether a surface is seen from both sides: glass and patches, which have normals of their own.
-    fn is_two_sided(&self, primitive: u32) -> bool {
+    /// Whether a surface is seen wherever it is hit: glass, patches, which have normals of their own, and what is hit from inside
+    /// only.
+    fn is_seen(&self, primitive: u32) -> bool {
         self.scene.material(primitive).is_transmissive()
-            || matches!(self.scene.shape(primitive), Shape::Face(face) if face.is_smooth())
+            || match self.scene.shape(primitive) {
+                Shape::Face(face) => face.is_smooth(),
+                Shape::Inward(_) => true,
+                _ => false,
+            }
     }
 
     fn shade(&mut self, ray: &Ray, hit: &Hit, surface: &Surface, weight: Rgb, level: u32) -> Rgb {
@@ -121,7 +126,7 @@ impl<'a> ClassicTracer<'a> {
     fn is_blocked(&self, ray: &Ray) -> bool {
         self.scene.accel().any_crossing(ray, 1.0, |primitive, crossing| {
             let hit = Hit { t: crossing.t, primitive, face: crossing.face };
-            let blocks = self.is_two_sided(primitive) || {
+            let blocks = self.is_seen(primitive) || {
                 let normal: DVec3 = self.scene.surface(ray, &hit).normal;
                 normal.dot(ray.dir) < 0.0
             };

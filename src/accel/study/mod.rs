@@ -86,6 +86,7 @@ fn count_test(shape: &Shape) {
         Shape::Quad(_) => 3,
         Shape::Triangle(_) | Shape::Face(_) => 4,
         Shape::Polygon(_) => 5,
+        Shape::Inward(inward) => return count_test(inward.shape()),
     });
 }
 

@@ -121,6 +121,7 @@ impl NaiveShape {
                 let normal = (vertices[1] - vertices[0]).cross(vertices[2] - vertices[0]);
                 Self::Polygon { vertices, normal }
             }
+            Shape::Inward(s) => Self::new(s.shape()),
         }
     }
 

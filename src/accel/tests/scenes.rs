@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::geometry::{Cone, Cylinder, Ends, Polygon, Quad, Shape, Sphere, Triangle};
+use crate::geometry::{Cone, Cylinder, Ends, Inward, Polygon, Quad, Shape, Sphere, Triangle};
 
 /// SplitMix64.
 pub(super) struct Random(pub(super) u64);
@@ -41,7 +41,7 @@ impl Random {
     }
 }
 
-pub(super) const KINDS: usize = 7;
+pub(super) const KINDS: usize = 8;
 
 pub(super) fn sphere(center: DVec3, radius: f64) -> Shape {
     Sphere::try_new(center, radius).expect("valid").into()
@@ -74,7 +74,8 @@ pub(super) fn shape_of(kind: usize, center: DVec3, size: f64, random: &mut Rando
         5 => Polygon::try_new(vec![center, center + a, center + a + b * 0.5, center + b])
             .map(Shape::from),
         // Slivers.
-        _ => return triangle([center, center + a, center + a * 0.5 + b * 1e-6]),
+        6 => return triangle([center, center + a, center + a * 0.5 + b * 1e-6]),
+        _ => return Inward::new(shape_of(3 * random.below(2), center, size, random)).into(),
     };
     shape.expect("valid")
 }

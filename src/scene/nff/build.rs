@@ -6,7 +6,7 @@ use super::{NffCounts, NffError, NffScene, read::Reader};
 use crate::{
     color::{Rgb, from_srgb, srgb_to_linear},
     geometry::{
-        Cone, Cylinder, Ends, Mesh, Polygon, Shape, Sphere,
+        Cone, Cylinder, Ends, Inward, Mesh, Polygon, Shape, Sphere,
         mesh::{Attributes, has_area},
         triangulate::Triangulator,
     },
@@ -50,8 +50,8 @@ pub(super) struct Builder {
     flat: Soup,
     smooth: Soup,
     counts: NffCounts,
+    /// How many shapes without size, and where the first is.
     dropped: Option<(u32, u32)>,
-    inverted: Option<(u32, u32)>,
     triangulator: Triangulator,
 }
 
@@ -62,11 +62,6 @@ struct Soup {
     normals: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
     material_of: Vec<u32>,
-}
-
-fn tally(tally: &mut Option<(u32, u32)>, line: u32) {
-    let (count, _) = tally.get_or_insert((0, line));
-    *count += 1;
 }
 
 impl Builder {
@@ -162,32 +157,36 @@ impl Builder {
         self.material_of.push(material);
     }
 
+    fn drop_at(&mut self, line: u32) {
+        self.dropped.get_or_insert((0, line)).0 += 1;
+    }
+
     fn sphere(&mut self, r: &mut Reader) -> Result<(), String> {
         let (center, radius) = (r.vector("center")?, r.number("radius")?);
         self.counts.spheres += 1;
         if radius == 0.0 {
-            tally(&mut self.dropped, r.line());
+            self.drop_at(r.line());
             return Ok(());
         }
-        if radius < 0.0 {
-            tally(&mut self.inverted, r.line());
-        }
         let sphere = Sphere::try_new(center, radius.abs()).map_err(|e| e.to_string())?;
-        self.push(sphere.into());
+        self.push(seen(radius < 0.0, sphere.into()));
         Ok(())
     }
 
     fn cone(&mut self, r: &mut Reader) -> Result<(), String> {
         let (base, base_radius) = (r.vector("base")?, r.number("base radius")?);
         let (top, top_radius) = (r.vector("apex")?, r.number("apex radius")?);
-        if base_radius < 0.0 || top_radius < 0.0 {
-            tally(&mut self.inverted, r.line());
+        if base_radius * top_radius < 0.0 {
+            return Err(format!(
+                "the radii are {base_radius} and {top_radius}, but must be of the same sign"
+            ));
         }
+        let is_inward = base_radius < 0.0 || top_radius < 0.0;
         let (a, b) = (base_radius.abs(), top_radius.abs());
         let (wide, narrow) = (a.max(b), a.min(b));
         if wide == 0.0 || base == top {
             self.counts.cones += 1;
-            tally(&mut self.dropped, r.line());
+            self.drop_at(r.line());
             return Ok(());
         }
         let shape = if wide - narrow <= CYLINDER_TOLERANCE * wide {
@@ -202,7 +201,8 @@ impl Builder {
             }
             .map(Shape::from)
         };
-        self.push(shape.map_err(|error| error.to_string())?);
+        let shape = shape.map_err(|error| error.to_string())?;
+        self.push(seen(is_inward, shape));
         Ok(())
     }
 
@@ -236,7 +236,7 @@ impl Builder {
             }
         }
         if soup.triangles.len() == before {
-            tally(&mut self.dropped, line);
+            self.drop_at(line);
             return Ok(());
         }
         soup.vertices.append(&mut corners);
@@ -275,24 +275,14 @@ impl Builder {
         };
         let mut camera = view.plan;
         camera.vertical_fov = edge_to_edge(view.angle, rows.unwrap_or(view.resolution[1]));
-        let warning = |tally: Option<(u32, u32)>, what: &str| {
-            tally.map(|(count, line)| Warning {
-                file: path.to_owned(),
-                line,
-                message: format!("{count} {what}"),
-            })
-        };
-        let warnings = [
-            warning(self.dropped, "shapes without size dropped (the first is here)"),
-            warning(
-                self.inverted,
-                "shapes of negative radius, to be seen from inside only, are seen from both sides \
-                 (the first is here)",
-            ),
-        ];
+        let dropped = self.dropped.map(|(count, line)| Warning {
+            file: path.to_owned(),
+            line,
+            message: format!("{count} shapes without size dropped (the first is here)"),
+        });
         Ok(NffScene {
             counts: self.counts,
-            warnings: warnings.into_iter().flatten().collect(),
+            warnings: dropped.into_iter().collect(),
             parts: Parts {
                 resolution: view.resolution,
                 depth: DEPTH,
@@ -316,6 +306,11 @@ impl Soup {
         let mesh = Mesh::try_new(self.vertices, self.triangles, attributes)?;
         Ok(MeshPart { mesh, material_of: self.material_of })
     }
+}
+
+/// The shape, from inside only if that is how it is to be seen.
+fn seen(is_inward: bool, shape: Shape) -> Shape {
+    if is_inward { Inward::new(shape).into() } else { shape }
 }
 
 /// The angle from edge to edge, in degrees, if `angle` is the one between the centres of the outermost of `rows` rows.
