@@ -33,7 +33,7 @@ use super::{
     cylinder::disc_reach,
     hit::{Crossing, Crossings, NO_CROSSINGS, Surface},
     ray::{Departure, Ray},
-    shape::ShapeError,
+    shape_error::ShapeError,
     solid::{Interval, leaving},
 };
 use crate::math::{Frame, Roots, compensated::hypot, difference_of_products, dot, scale};

@@ -16,7 +16,7 @@ use super::{
     Bounds, Ends, Similarity,
     hit::{Crossing, Crossings, NO_CROSSINGS, Surface},
     ray::{Departure, Ray},
-    shape::ShapeError,
+    shape_error::ShapeError,
     solid::{Interval, leaving},
 };
 use crate::math::{Frame, Roots, compensated::hypot, difference_of_products, scale};

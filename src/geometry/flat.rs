@@ -14,7 +14,7 @@ use super::{
     Bounds,
     hit::{Crossing, Surface},
     ray::Ray,
-    shape::ShapeError,
+    shape_error::ShapeError,
 };
 use crate::math::{self, compensated::two_sum, cross, difference_of_products, scale};
 

@@ -7,7 +7,7 @@ use super::{
     Bounds, Similarity, flat,
     hit::{Crossing, Crossings, Surface},
     ray::Ray,
-    shape::ShapeError,
+    shape_error::ShapeError,
 };
 use crate::math::{cross, scale};
 

@@ -6,7 +6,7 @@ use super::{
     Bounds, Similarity,
     hit::{Crossing, Crossings, NO_CROSSINGS, Surface},
     ray::{Departure, Ray},
-    shape::ShapeError,
+    shape_error::ShapeError,
 };
 use crate::math::{Roots, cross, scale};
 

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{shape::ShapeError, triangle::Triangle};
+use super::{shape_error::ShapeError, triangle::Triangle};
 
 /// The six planes of a regular tetrahedron: three sides, and the base cut in three about its centre.
 ///

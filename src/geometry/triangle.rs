@@ -9,7 +9,7 @@ use super::{
     hit::{Crossing, Crossings, Surface},
     lanes::{Column, LANES, RayLanes, Vectors},
     ray::Ray,
-    shape::ShapeError,
+    shape_error::ShapeError,
 };
 use crate::math::{cross, scale};
 
