@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     Outcome, Picture,
     crew::{Crew, Sampler, in_turn, lock, trace_centers},
-    goal::Demand,
+    demand::Demand,
     known::Known,
     outlook::{Outlook, tile_of},
     plane::{AT_ONCE, Area, Plane},

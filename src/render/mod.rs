@@ -3,6 +3,7 @@
 mod adaptive;
 mod blocks;
 mod crew;
+mod demand;
 mod goal;
 mod hidden;
 mod known;
