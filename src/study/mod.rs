@@ -6,6 +6,7 @@ pub mod charts;
 mod draw;
 mod measure;
 mod plan;
+pub mod plot;
 mod raster;
 pub mod reference;
 pub mod report;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Row, Study, Trade, charts::Chart, svg::escaped};
+use super::{Row, Study, Trade, plot::Chart, svg::escaped};
 
 /// The rows as comma-separated values, a line each, under a line of names.
 pub fn csv(rows: &[Row]) -> String {
