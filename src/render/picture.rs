@@ -1,0 +1,115 @@
+//! A part of a picture, of whatever samplers see: what becomes of it by each mode and goal.
+
+use std::{sync::Mutex, time::Instant};
+
+use super::{
+    Account, Block, Goal, Outcome, Progress, RayCounts, Sink, Unfinished,
+    adaptive::Adaptive,
+    crew::{Crew, Meter, Sampler},
+    plain,
+    plane::Area,
+    round::Threshold,
+    watch::Watch,
+};
+use crate::{aa::AntiAliasing, color::Rgb, film::Tile};
+
+/// A picture before it is a film.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// The colours, row by row, linear.
+    pub colors: Vec<Rgb>,
+    /// The rays through each pixel.
+    pub samples: Vec<u32>,
+    /// The estimated squared error of each pixel, in levels of 255.
+    pub errors: Vec<f32>,
+    /// How it ended.
+    pub outcome: Outcome,
+}
+
+impl Picture {
+    /// The estimated error: root mean square of all channels, in levels of 255.
+    pub fn estimated_rmse(&self) -> f64 {
+        (self.squared_error() / self.errors.len().max(1) as f64).sqrt()
+    }
+
+    /// The estimated squared error, summed over the pixels.
+    fn squared_error(&self) -> f64 {
+        self.errors.iter().copied().map(f64::from).sum::<f64>()
+    }
+
+    pub(super) fn into_block(self, number: usize, place: Tile, rays: RayCounts) -> Block {
+        let (squared_error, unsettled) = (self.squared_error(), self.outcome.unsettled as u64);
+        let account = Account { rays, squared_error, unsettled };
+        let Self { colors, samples, errors, outcome, .. } = self;
+        Block { number, place, colors, samples, errors, account, outcome }
+    }
+}
+
+/// The part `part` of a picture `width` pixels wide, of whatever `new_sampler`'s samplers see; each worker thread has its own.
+///
+/// Every pixel depends on its place in the whole picture and on what is seen within a pixel's width around it, never on `part`.
+pub fn picture<S: Sampler + Send>(
+    part: &Tile,
+    width: u32,
+    aa: AntiAliasing,
+    goal: Goal,
+    new_sampler: &(dyn Fn() -> S + Sync),
+    progress: &(dyn Fn(Progress) + Sync),
+) -> Picture {
+    let watch = Watch { sink: &Nobody, place: part, rays: &Mutex::default() };
+    picture_watched(part, width, (aa, goal), new_sampler, progress, &watch)
+}
+
+/// Takes no notice of what a picture is on its way.
+struct Nobody;
+
+impl Sink for Nobody {
+    fn put(&self, _: Block) {}
+}
+
+/// The same, looked after.
+pub(super) fn picture_watched<S: Sampler + Send>(
+    part: &Tile,
+    width: u32,
+    (aa, goal): (AntiAliasing, Goal),
+    new_sampler: &(dyn Fn() -> S + Sync),
+    progress: &(dyn Fn(Progress) + Sync),
+    watch: &Watch,
+) -> Picture {
+    let area = Area::of(part);
+    let started = Instant::now();
+    let meter = Meter::new(progress_units(aa, goal) * area.len() as u64, progress);
+    let crew = Crew { new_sampler, meter: &meter };
+    match aa {
+        AntiAliasing::None | AntiAliasing::Grid { side: 1 } => plain::centers(&crew, &area),
+        AntiAliasing::Grid { side } => plain::grid(&crew, &area, side),
+        AntiAliasing::Sequence { count } => plain::sequence(&crew, &area, width, count),
+        AntiAliasing::Adaptive { error, most } => {
+            let begun = || watch.kept().unwrap_or_else(|| Unfinished::new(&area, width, most));
+            let (adaptive, outcome) = match goal {
+                Goal::Mode => {
+                    let mut adaptive = Adaptive::new(&area, width, most);
+                    adaptive.begin(&crew, || false);
+                    meter.reach(0.5);
+                    adaptive.refine(&crew, Threshold::Error(error * error), true, || false);
+                    let unsettled = adaptive.unsettled(error * error);
+                    (adaptive, Outcome { unsettled, ..Outcome::default() })
+                }
+                Goal::Error(wanted) => begun().reach_error(&crew, wanted, watch),
+                Goal::Until(end) => begun().reach_time(&crew, (started, end), watch),
+            };
+            meter.reach(1.0);
+            Picture { outcome, ..adaptive.into_picture() }
+        }
+    }
+}
+
+/// How much of [`Progress`] a pixel is, of which its centre is one: the adaptive mode goes over it twice, and on the way to a goal the
+/// centres are the least of it.
+pub(super) fn progress_units(aa: AntiAliasing, goal: Goal) -> u64 {
+    match (aa, goal) {
+        (AntiAliasing::Adaptive { .. }, Goal::Mode) => 2,
+        (AntiAliasing::Adaptive { .. }, _) => 64,
+        _ => 1,
+    }
+}
