@@ -28,6 +28,19 @@ fn signal(child: &Child, name: &str) {
     sent.expect("kill is there");
 }
 
+/// Waits until a child to which that was signalled has stopped, or ended.
+fn wait_until_it_sleeps(child: &Child) {
+    let id = child.id().to_string();
+    loop {
+        let told =
+            Command::new("ps").args(["-o", "stat=", "-p", &id]).output().expect("ps is there");
+        let state = String::from_utf8_lossy(&told.stdout);
+        if state.trim_start().starts_with(['T', 'Z']) || state.trim().is_empty() {
+            return;
+        }
+    }
+}
+
 /// Starts a render that tells its progress, and waits until at least `share` of it is done, or it ended.
 fn until(at: &Path, share: f64, more: &[&str]) -> Child {
     let arguments = [&PICTURE[..], &["--progress", "json"], more].concat();
@@ -344,6 +357,7 @@ fn what_a_killed_program_left_is_deleted_by_the_next_one() {
     let mut is_kept = false;
     while !is_kept {
         let child = signalled_while_it_writes(at, "-STOP");
+        wait_until_it_sleeps(&child);
         let before = names_in(at);
         is_kept = is_written_in(at);
         done(&run(at, &small));
