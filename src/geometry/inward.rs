@@ -16,6 +16,7 @@ pub struct Inward {
     shape: Shape,
 }
 
+// The shapes' methods are inlined wherever they are called; those here call them in turn, and so are not.
 impl Inward {
     /// What is seen of `shape` from inside.
     pub fn new(shape: Shape) -> Self {
@@ -53,8 +54,14 @@ impl Inward {
     }
 
     #[inline(never)]
-    pub(crate) fn surface(&self, ray: &Ray, hit: &Hit, own: Option<&Departure>) -> Surface {
-        self.shape.surface_at(ray, hit, own, DVec3::ZERO)
+    pub(crate) fn surface(
+        &self,
+        ray: &Ray,
+        hit: &Hit,
+        own: Option<&Departure>,
+        rest: DVec3,
+    ) -> Surface {
+        self.shape.surface_at(ray, hit, own, rest)
     }
 }
 

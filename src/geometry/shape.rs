@@ -211,7 +211,7 @@ impl Shape {
             Self::Triangle(s) => s.surface(ray, hit.t, rest),
             Self::Polygon(s) => s.surface(ray, hit.t, rest),
             Self::Face(s) => s.surface(ray, hit.t, rest),
-            Self::Inward(s) => s.surface(ray, hit, own),
+            Self::Inward(s) => s.surface(ray, hit, own, rest),
         }
     }
 
@@ -244,7 +244,7 @@ impl Shape {
     /// Where a shadow ray from `surface` should start, measured from the flat point: see [`Face::shadow_offset`].
     #[inline]
     pub(crate) fn shadow_offset(&self, surface: &Surface, inward: bool) -> DVec3 {
-        match self {
+        match self.both_sided() {
             Self::Face(s) => s.shadow_offset(surface, inward),
             _ => DVec3::ZERO,
         }
