@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let goal_of_picture = goal.map_or(Goal::Mode, Goal::Error);
             let found = picture(&scene, mode.parse()?, goal_of_picture)?;
             let error = distance(&found, &truth);
-            let ratio = found.estimated_rmse / error;
+            let ratio = found.estimated_rmse.ok_or("no estimate")? / error;
             print!(" {error:6.2} x{ratio:.2}");
             if error >= LEAST {
                 all += 1;

@@ -11,7 +11,7 @@ pub use crate::trace::classic::CLASSIC_DEPTH;
 use crate::{
     color::Rgb,
     film::{Film, Tile},
-    render::{Outcome, RayCounts, RenderError, Rendering},
+    render::{Outcome, RayCounts, RenderError, Rendering, pool},
     scene::Scene,
     trace::classic::ClassicTracer,
 };
@@ -28,12 +28,7 @@ pub fn render_classic(
     threads: Option<NonZeroUsize>,
 ) -> Result<Rendering, RenderError> {
     let started = Instant::now();
-    let cores = || std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
-    let threads = threads.map_or_else(cores, NonZeroUsize::get);
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .map_err(|source| RenderError::Threads { threads, source })?;
+    let pool = pool(threads)?;
     let view = scene.camera().view(CLASSIC_SIZE, CLASSIC_SIZE);
     let rows: Vec<(Vec<Rgb>, RayCounts)> = pool.install(|| {
         (0..=CLASSIC_SIZE)
@@ -60,12 +55,12 @@ pub fn render_classic(
     let rays = rows.iter().fold(RayCounts::default(), |sum, (_, counts)| sum + *counts);
     let seconds = started.elapsed().as_secs_f64();
     Ok(Rendering {
-        errors: vec![0.0; rows.len().saturating_sub(1).pow(2)],
-        estimated_rmse: 0.0,
+        errors: Vec::new(),
+        estimated_rmse: None,
         outcome: Outcome::default(),
         film,
         rays,
-        threads,
+        threads: pool.current_num_threads(),
         seconds,
         depth: CLASSIC_DEPTH,
     })

@@ -24,7 +24,7 @@
 //!
 //! let mut png = Vec::new();
 //! film::write_png(&rendering.film, None, &mut png)?;
-//! assert!(rendering.rays.camera > 60 * 60 && rendering.estimated_rmse < 4.0);
+//! assert!(rendering.rays.camera > 60 * 60 && rendering.estimated_rmse.is_some_and(|rmse| rmse < 4.0));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!

@@ -235,17 +235,7 @@ impl<'a> Job<'a> {
     pub fn into_rendering(self, effort: &Effort) -> Rendering {
         let state = self.state.into_inner().unwrap_or_else(PoisonError::into_inner);
         let State { film, accounts, outcome, .. } = state;
-        let sum = Account::sum(accounts.iter().flatten());
-        Rendering {
-            estimated_rmse: (sum.squared_error / film.pixels().len().max(1) as f64).sqrt(),
-            outcome: Outcome { unsettled: sum.unsettled as usize, ..outcome },
-            rays: sum.rays,
-            threads: effort.threads,
-            seconds: effort.seconds,
-            depth: effort.depth,
-            film,
-            errors: Vec::new(),
-        }
+        Rendering::of_blocks(film, Vec::new(), accounts.iter().flatten(), outcome, effort)
     }
 
     fn kept(&self) -> MutexGuard<'_, Kept> {

@@ -4,7 +4,6 @@ use std::time::Instant;
 
 use anyhow::Context;
 use image::RgbImage;
-use whitted::aa::AntiAliasing;
 use whitted::classic::{CLASSIC_SIZE, render_classic};
 use whitted::film::metrics::read_png_rgb8;
 use whitted::film::{Difference, Film, Label, Share, encode};
@@ -130,15 +129,20 @@ fn perform(
     let measured = reference.map(|reference| measure(&rendering.film, reference)).transpose()?;
     let total = started.elapsed().as_secs_f64();
     let seconds = Seconds { load, build, render: rendering.seconds, write, total };
+    let mode = match args.rules {
+        Rules::Classic => "classic".to_owned(),
+        Rules::Whitted => options.aa.to_string(),
+    };
     if let Some(target) = stats {
-        target
-            .write(&Statistics::new(scene, options.aa, &rendering, measured, seconds).to_json()?)?;
+        target.write(
+            &Statistics::new(scene, mode.clone(), &rendering, measured, seconds).to_json()?,
+        )?;
     }
     if !is_silent {
         for warning in warnings(&rendering, args) {
             streams::note(&format!("warning: {warning}"));
         }
-        streams::note(&summary(&picture.name(), options.aa, &rendering, measured, total));
+        streams::note(&summary(&picture.name(), mode, &rendering, measured, total));
         if args.rules == Rules::Classic {
             let RayCounts { camera_hit, reflected, refracted, shadow, .. } = rendering.rays;
             streams::note(&format!(
@@ -161,11 +165,10 @@ fn measure(film: &Film, reference: &RgbImage) -> Result<f64, Failure> {
 fn warnings(rendering: &Rendering, args: &RenderArgs) -> Vec<String> {
     let outcome = &rendering.outcome;
     let mut warnings = Vec::new();
-    if let Some(wanted) = outcome.missed_error {
+    if let (Some(wanted), Some(reached)) = (outcome.missed_error, rendering.estimated_rmse) {
         warnings.push(format!(
-            "--max-error {wanted} is not reached: the estimated error is {:.3} levels with the most rays a pixel may \
-             get; allow more, such as --aa adaptive:0,4096",
-            rendering.estimated_rmse
+            "--max-error {wanted} is not reached: the estimated error is {reached:.3} levels with the most rays a pixel \
+             may get; allow more, such as --aa adaptive:0,4096"
         ));
     }
     if let (Some(late), Some(limit)) = (outcome.late, args.time_limit) {
@@ -180,7 +183,7 @@ fn warnings(rendering: &Rendering, args: &RenderArgs) -> Vec<String> {
 /// What was done and what it took, in two lines.
 fn summary(
     name: &str,
-    aa: AntiAliasing,
+    mode: String,
     rendering: &Rendering,
     measured: Option<f64>,
     total: f64,
@@ -188,12 +191,12 @@ fn summary(
     let mode = match (rendering.outcome.cut, rendering.outcome.per_ray) {
         (true, _) => "adaptive until the time was up".to_owned(),
         (_, Some(per_ray)) => format!("adaptive to {per_ray:.4} squared levels per ray"),
-        _ => aa.to_string(),
+        _ => mode,
     };
-    let mut error = format!("off by about {:.2} of 255 levels", rendering.estimated_rmse);
-    if let Some(measured) = measured {
-        error = format!("{error}, {measured:.2} measured");
-    }
+    let estimated =
+        rendering.estimated_rmse.map(|rmse| format!(", off by about {rmse:.2} of 255 levels"));
+    let measured = measured.map(|rmse| format!(", {rmse:.2} measured"));
+    let error = estimated.into_iter().chain(measured).collect::<String>();
     let unsettled = match rendering.outcome.unsettled {
         0 => String::new(),
         pixels => format!(" ({pixels} pixels above their limit with all rays)"),
@@ -202,7 +205,7 @@ fn summary(
     let all = rays.camera + rays.reflected + rays.refracted + rays.transmitted + rays.shadow;
     let plural = if *threads == 1 { "" } else { "s" };
     format!(
-        "wrote {name}: {}x{} pixels, {mode}, depth {depth}, {error}{unsettled}, {total:.2} s\n\
+        "wrote {name}: {}x{} pixels, {mode}, depth {depth}{error}{unsettled}, {total:.2} s\n\
          {all} rays in {seconds:.2} s on {threads} thread{plural}: {} camera, {} reflected, {} refracted, \
          {} transmitted, {} shadow",
         film.width(),

@@ -1,7 +1,6 @@
 //! The statistics file: one JSON object whose keys are always all there.
 
 use serde::Serialize;
-use whitted::aa::AntiAliasing;
 use whitted::film::Film;
 use whitted::render::{RayCounts, Rendering};
 use whitted::scene::Scene;
@@ -73,7 +72,7 @@ struct Error {
 impl<'a> Statistics<'a> {
     pub(crate) fn new(
         scene: &'a Scene,
-        aa: AntiAliasing,
+        mode: String,
         rendering: &Rendering,
         measured_rmse: Option<f64>,
         seconds: Seconds,
@@ -86,7 +85,7 @@ impl<'a> Statistics<'a> {
             width: rendering.film.width(),
             height: rendering.film.height(),
             threads: rendering.threads,
-            aa: aa.to_string(),
+            aa: mode,
             depth: rendering.depth,
             primitives: scene.primitive_count(),
             lights: scene.light_count(),
@@ -95,7 +94,7 @@ impl<'a> Statistics<'a> {
             bvh: Bvh { nodes: bvh.nodes, bytes: bvh.bytes },
             samples_per_pixel: Samples::of(&rendering.film),
             error: Error {
-                estimated_rmse: Some(rendering.estimated_rmse),
+                estimated_rmse: rendering.estimated_rmse,
                 measured_rmse,
                 squared_per_ray: rendering.outcome.per_ray,
             },

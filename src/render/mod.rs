@@ -25,6 +25,7 @@ use std::{
     time::{Duration, Instant},
 };
 
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use thiserror::Error;
 
 pub use blocks::{Account, Block, Sink, blocks};
@@ -114,8 +115,8 @@ pub struct Rendering {
     /// kept.
     pub errors: Vec<f32>,
     /// The picture's estimated error against the exact average over each pixel: root mean square of all channels, in levels of
-    /// 255.
-    pub estimated_rmse: f64,
+    /// 255; `None` by the classical rules, which estimate nothing.
+    pub estimated_rmse: Option<f64>,
     /// How it ended.
     pub outcome: Outcome,
     /// The rays cast.
@@ -126,6 +127,30 @@ pub struct Rendering {
     pub seconds: f64,
     /// The deepest level of recursion that was allowed.
     pub depth: u32,
+}
+
+impl Rendering {
+    /// The picture `film` of blocks with these accounts, in the order of their numbers.
+    pub(crate) fn of_blocks<'a>(
+        film: Film,
+        errors: Vec<f32>,
+        accounts: impl Iterator<Item = &'a Account>,
+        outcome: Outcome,
+        effort: &Effort,
+    ) -> Self {
+        let sum = Account::sum(accounts);
+        let pixels = film.pixels().len().max(1) as f64;
+        Self {
+            estimated_rmse: Some((sum.squared_error / pixels).sqrt()),
+            outcome: Outcome { unsettled: sum.unsettled as usize, ..outcome },
+            rays: sum.rays,
+            threads: effort.threads,
+            seconds: effort.seconds,
+            depth: effort.depth,
+            film,
+            errors,
+        }
+    }
 }
 
 /// Why there is no picture.
@@ -157,11 +182,11 @@ pub enum RenderError {
 
 /// Renders `scene`; `progress` is called from the worker threads after every tile.
 ///
-/// The picture depends on the scene, size, anti-aliasing and depth alone: it is the same, byte for byte, for any number
-/// of threads.
+/// The picture depends on the scene and the options alone, and not on the number of threads: it is the same, byte for byte,
+/// every time, but for [`Goal::Until`].
 ///
 /// # Errors
-/// The threads cannot be started.
+/// The part that is wanted is not in the picture, or the threads cannot be started.
 pub fn render(
     scene: &Scene,
     options: &RenderOptions,
@@ -202,7 +227,7 @@ pub fn part(scene: &Scene, options: &RenderOptions) -> Result<Tile, RenderError>
 /// Each block is the same whichever others are rendered, in whatever order and by however many threads.
 ///
 /// # Errors
-/// The threads cannot be started.
+/// Those of [`render`].
 pub fn render_blocks(
     scene: &Scene,
     options: &RenderOptions,
@@ -212,12 +237,7 @@ pub fn render_blocks(
     let part = part(scene, options)?;
     let [width, height] = options.size.unwrap_or(scene.resolution());
     let depth = options.depth.unwrap_or(scene.depth());
-    let cores = || std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
-    let threads = options.threads.map_or_else(cores, NonZeroUsize::get);
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .map_err(|source| RenderError::Threads { threads, source })?;
+    let pool = pool(options.threads)?;
     let camera = options.camera.map_or(*scene.camera(), |camera| scene.own_camera(camera));
     let (view, mode) = (camera.view(width, height), (options.aa, options.goal));
     let is_adaptive = matches!(options.aa, AntiAliasing::Adaptive { .. });
@@ -238,5 +258,16 @@ pub fn render_blocks(
     };
     let places = blocks(&part, options.aa, options.goal);
     pool.install(|| blocks::run(&places, progress_units(options.aa, options.goal), sink, &block));
-    Ok(Effort { threads, seconds: started.elapsed().as_secs_f64(), depth })
+    let seconds = started.elapsed().as_secs_f64();
+    Ok(Effort { threads: pool.current_num_threads(), seconds, depth })
+}
+
+/// So many worker threads, or one for each core.
+pub(crate) fn pool(threads: Option<NonZeroUsize>) -> Result<ThreadPool, RenderError> {
+    let cores = || std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+    let threads = threads.map_or_else(cores, NonZeroUsize::get);
+    ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .map_err(|source| RenderError::Threads { threads, source })
 }

@@ -236,8 +236,9 @@ mod tests {
             let expected = render(&scene, &options, &|_| ()).expect("rendered");
             let shown = canvas.look();
             assert_eq!(shown.film, expected.film);
-            let error = shown.estimated_rmse.expect("an estimate");
-            assert!((error / expected.estimated_rmse - 1.0).abs() < 1e-9, "{error}");
+            let [error, expected] =
+                [&shown.estimated_rmse, &expected.estimated_rmse].map(|e| e.expect("an estimate"));
+            assert!((error / expected - 1.0).abs() < 1e-9, "{error}");
             assert!(shown.seconds.is_some() && shown.pass.0 == shown.pass.1 + 1);
             assert!(changes.load(Ordering::Relaxed) >= shown.pass.1);
         }

@@ -34,17 +34,8 @@ impl<'a> Whole<'a> {
         let state = self.state.into_inner().unwrap_or_else(PoisonError::into_inner);
         let State { film, errors, outcome, mut accounts } = state;
         accounts.sort_unstable_by_key(|(number, _)| *number);
-        let sum = Account::sum(accounts.iter().map(|(_, account)| account));
-        Rendering {
-            estimated_rmse: (sum.squared_error / errors.len().max(1) as f64).sqrt(),
-            outcome: Outcome { unsettled: sum.unsettled as usize, ..outcome },
-            rays: sum.rays,
-            threads: effort.threads,
-            seconds: effort.seconds,
-            depth: effort.depth,
-            film,
-            errors,
-        }
+        let accounts = accounts.iter().map(|(_, account)| account);
+        Rendering::of_blocks(film, errors, accounts, outcome, effort)
     }
 }
 

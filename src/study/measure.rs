@@ -216,7 +216,7 @@ fn row(
         rays: rays.camera + rays.reflected + rays.refracted + rays.transmitted + rays.shadow,
         rays_per_pixel: rays.camera as f64 / pixels,
         measured_rmse,
-        estimated_rmse: rendering.estimated_rmse,
+        estimated_rmse: rendering.estimated_rmse.unwrap_or(f64::NAN),
         worst,
         relative_seconds: 1.0,
         relative_rays: 1.0,

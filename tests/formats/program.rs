@@ -69,6 +69,24 @@ fn codes_tell_what_was_wrong() {
     assert!(text.contains(&format!("\n     | {:37}^^^^^^", "")), "{text}");
 }
 
+/// They estimate no error, so they claim none.
+#[test]
+fn the_classic_rules_tell_their_rays_and_no_error() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = file("tests/formats/spd/tetra.nff").display().to_string();
+    let out = folder.path().join("out.png").display().to_string();
+    let output = whitted(&["render", &scene, "--rules", "classic", "-o", &out, "--stats", "-"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let text = stderr(&output);
+    assert!(
+        text.contains("512x512 pixels, classic, depth 5, ") && !text.contains("off by"),
+        "{text}"
+    );
+    let stats: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert!(stats["error"]["estimated_rmse"].is_null() && stats["aa"] == "classic", "{stats}");
+    assert_eq!(stats["samples_per_pixel"]["mean"], 4.0);
+}
+
 #[test]
 fn the_classic_rules_leave_no_choice() {
     let scene = file("tests/formats/spd/tetra.nff").display().to_string();

@@ -112,7 +112,7 @@ fn what_is_said_of_the_error_is_true() {
         {
             let rendering = rendered(&scene, mode(aa));
             let error = rmse(&rendering.film, &truth);
-            let ratio = rendering.estimated_rmse / error;
+            let ratio = rendering.estimated_rmse.expect("an estimate") / error;
             let _ = writeln!(report, "{name:12} {aa:12} {error:7.3} {ratio:6.2}");
             all += 1;
             close += usize::from((1.0 / 1.5..=1.5).contains(&ratio));
