@@ -178,6 +178,12 @@ pub enum RenderError {
         /// Rows of the picture.
         height: u32,
     },
+    /// A goal was set for a mode that gives every pixel the same rays.
+    #[error("an error or a time to render to needs the anti-aliasing mode `adaptive`, not `{aa}`")]
+    Goal {
+        /// The mode.
+        aa: AntiAliasing,
+    },
 }
 
 /// Renders `scene`; `progress` is called from the worker threads after every tile.
@@ -186,7 +192,7 @@ pub enum RenderError {
 /// every time, but for [`Goal::Until`].
 ///
 /// # Errors
-/// The part that is wanted is not in the picture, or the threads cannot be started.
+/// The part that is wanted is not in the picture, the goal needs another mode, or the threads cannot be started.
 pub fn render(
     scene: &Scene,
     options: &RenderOptions,
@@ -235,12 +241,15 @@ pub fn render_blocks(
 ) -> Result<Effort, RenderError> {
     let started = Instant::now();
     let part = part(scene, options)?;
+    let is_adaptive = matches!(options.aa, AntiAliasing::Adaptive { .. });
+    if options.goal != Goal::Mode && !is_adaptive {
+        return Err(RenderError::Goal { aa: options.aa });
+    }
     let [width, height] = options.size.unwrap_or(scene.resolution());
     let depth = options.depth.unwrap_or(scene.depth());
     let pool = pool(options.threads)?;
     let camera = options.camera.map_or(*scene.camera(), |camera| scene.own_camera(camera));
     let (view, mode) = (camera.view(width, height), (options.aa, options.goal));
-    let is_adaptive = matches!(options.aa, AntiAliasing::Adaptive { .. });
     let thin = is_adaptive.then(|| thin::least_samples(scene, &view, &Area::of(&part))).flatten();
     let block = |number: usize, place: &Tile, progress: &(dyn Fn(Progress) + Sync)| {
         let rays = Mutex::new(RayCounts::default());

@@ -114,3 +114,18 @@ fn a_picture_is_shown_on_its_way_to_an_error_nearer_and_nearer() {
     assert_eq!(looks.len(), 2);
     assert!(off(&stopped.end.into_inner().expect("no panic")) <= off(&looks[1].0));
 }
+
+#[test]
+fn a_goal_needs_the_adaptive_mode() {
+    let scene = load_builtin("assignment").expect("a scene");
+    for (aa, goal) in [("none", Goal::Error(1.0)), ("grid:2", Goal::Until(Instant::now()))] {
+        let options = RenderOptions {
+            size: Some([8, 8]),
+            aa: aa.parse().expect(aa),
+            goal,
+            ..RenderOptions::default()
+        };
+        let error = render(&scene, &options, &|_| ()).expect_err(aa).to_string();
+        assert!(error.contains(&format!("`adaptive`, not `{aa}`")), "{error}");
+    }
+}
