@@ -2,6 +2,8 @@
 
 use glam::DVec2;
 
+use crate::math::random::SplitMix64;
+
 /// A pixel's own sequence of places in the unit square.
 ///
 /// The first 2ᵏ places hit every elementary interval (2⁻ᵃ wide, 2⁻ᵇ high, a + b = k) exactly once, for every k: each
@@ -19,7 +21,7 @@ pub struct Sequence {
 impl Sequence {
     /// The sequence of the pixel with this number, row by row over the whole picture.
     pub fn of_pixel(pixel: u64, seed: u64) -> Self {
-        let bits = mix(pixel ^ mix(seed ^ 0x5EED_0F5A_3B1E_5EED));
+        let bits = hash(pixel ^ hash(seed ^ 0x5EED_0F5A_3B1E_5EED));
         Self { seeds: [bits as u32, (bits >> 32) as u32] }
     }
 
@@ -33,12 +35,9 @@ impl Sequence {
     }
 }
 
-/// The 64 bits of a number, well stirred (the end of SplitMix64).
-pub(crate) fn mix(x: u64) -> u64 {
-    let x = x.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    let x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    let x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    x ^ (x >> 31)
+/// A number that looks random for each `x`.
+pub(crate) fn hash(x: u64) -> u64 {
+    SplitMix64::new(x).next_u64()
 }
 
 /// Sobol's second dimension, whose direction numbers come from the polynomial x + 1.

@@ -19,7 +19,7 @@ use obvhs::{
 use rayon::prelude::*;
 
 use super::{frame::Frame, huge};
-use crate::geometry::Shape;
+use crate::{geometry::Shape, math::random::SplitMix64};
 
 /// By how much a box may be larger than it must be, relative to its size.
 const JITTER: f32 = 1.0 / 1024.0;
@@ -33,23 +33,19 @@ pub(super) fn boxes(shapes: &[Shape], inside: &[u32], frame: &Frame) -> Vec<Aabb
             let (min, max) = frame.outer_box(&shapes[*k as usize].bounds());
             let (min, max) = (Vec3A::from_array(min), Vec3A::from_array(max));
             let reach = (max - min).max_element() * JITTER;
-            let mut random = u64::from(*k);
+            let mut random = SplitMix64::new(u64::from(*k));
             Aabb {
-                min: min - unit_vector(&mut random) * reach,
-                max: max + unit_vector(&mut random) * reach,
+                min: min - point_of_unit_cube(&mut random) * reach,
+                max: max + point_of_unit_cube(&mut random) * reach,
             }
         })
         .collect_into_vec(&mut boxes);
     boxes
 }
 
-/// Three numbers from 0 to 1 (Steele, Lea & Flood, "Fast splittable pseudorandom number generators", 2014).
-fn unit_vector(state: &mut u64) -> Vec3A {
-    *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    let mut z = *state;
-    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    z ^= z >> 31;
+/// Three numbers in `[0, 1)`, of 21 bits each.
+fn point_of_unit_cube(random: &mut SplitMix64) -> Vec3A {
+    let z = random.next_u64();
     let part = |shift: u32| ((z >> shift) & 0x1f_ffff) as f32 / 2_097_152.0;
     Vec3A::new(part(0), part(21), part(42))
 }

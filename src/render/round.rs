@@ -14,7 +14,7 @@ use crate::{
     aa::{
         Sample,
         refined::{Refined, Stage},
-        sobol::{Sequence, mix},
+        sobol::{Sequence, hash},
     },
     color::Rgb,
 };
@@ -91,8 +91,9 @@ pub(super) fn is_disputed(centers: &Plane<Sample>, x: i64, y: i64) -> bool {
 pub(super) fn is_picked(threshold: Threshold, x: i64, y: i64) -> bool {
     match threshold {
         Threshold::PerRayOfSome(_, share, round) if share < 1.0 => {
-            let hash = mix((x as u64) << 32 ^ y as u64 ^ mix(u64::from(round))) >> 40;
-            (hash as f32) < share * (1_u32 << 24) as f32
+            let place = (x as u64) << 32 ^ y as u64;
+            let number = hash(place ^ hash(u64::from(round))) >> 40;
+            (number as f32) < share * (1_u32 << 24) as f32
         }
         _ => true,
     }

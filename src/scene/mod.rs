@@ -6,6 +6,7 @@
 
 pub mod builtin;
 pub mod desc;
+mod disjoint;
 pub mod error;
 pub mod format;
 pub mod generators;

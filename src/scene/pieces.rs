@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::obj::weld::weld;
+use super::{disjoint::DisjointSets, obj::weld::weld};
 use crate::geometry::Mesh;
 
 /// A straight line and the distance from it within which a piece lies.
@@ -42,26 +42,12 @@ pub(super) fn rods(mesh: &Mesh) -> Vec<Rod> {
 
 /// The first vertex of each vertex's piece; `corners` are the first ones in the same places.
 fn pieces(mesh: &Mesh, corners: &[u32]) -> Vec<u32> {
-    // Links to earlier vertices, which end at the first one of a piece.
-    let mut links = corners.to_vec();
-    for corners in mesh.triangles() {
-        let firsts = corners.map(|corner| first(&mut links, corner));
-        let least = firsts.into_iter().min().unwrap_or(firsts[0]);
-        for other in firsts {
-            links[other as usize] = least;
-        }
+    let mut sets = DisjointSets::of_links(corners);
+    for [a, b, c] in mesh.triangles() {
+        sets.join(*a, *b);
+        sets.join(*a, *c);
     }
-    (0..links.len() as u32).map(|vertex| first(&mut links, vertex)).collect()
-}
-
-/// Where the links of a vertex end; they become shorter on the way.
-fn first(links: &mut [u32], mut vertex: u32) -> u32 {
-    while links[vertex as usize] != vertex {
-        let next = links[links[vertex as usize] as usize];
-        links[vertex as usize] = next;
-        vertex = next;
-    }
-    vertex
+    (0..corners.len() as u32).map(|vertex| sets.find(vertex)).collect()
 }
 
 /// What is known of a piece; lengths are from its first vertex.

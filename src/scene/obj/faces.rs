@@ -8,9 +8,11 @@ use rayon::prelude::*;
 use super::{
     lists::{Obj, Tally},
     normals::Mixed,
-    weld::mix,
 };
-use crate::geometry::{mesh::has_area, triangulate::vector_area};
+use crate::{
+    geometry::{mesh::has_area, triangulate::vector_area},
+    math::random::mix,
+};
 
 /// How many faces are looked at by one thread at a time.
 const BLOCK: usize = 1 << 14;

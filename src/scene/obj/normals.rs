@@ -8,11 +8,12 @@ use std::{collections::HashMap, ops::Range};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-use super::{
-    lists::{NONE, Obj, Smoothing},
-    weld::mix,
+use super::lists::{NONE, Obj, Smoothing};
+use crate::{
+    geometry::triangulate::vector_area,
+    math::{random::mix, scale},
+    scene::disjoint::DisjointSets,
 };
-use crate::{geometry::triangulate::vector_area, math::scale};
 
 /// Faces without smoothing groups are smooth where they meet at less than this angle.
 const CREASE_DEGREES: f64 = 30.0;
@@ -164,7 +165,7 @@ fn units(obj: &Obj, wanted: &[bool]) -> Vec<DVec3> {
 #[derive(Debug, Default)]
 struct Ring {
     /// Links between corners that share a normal.
-    parent: Vec<u32>,
+    sets: DisjointSets,
     /// The first corner of each smoothing group, or at each edge from the point.
     seen: Vec<(u64, u32)>,
     /// Where there are too many to go through them.
@@ -192,7 +193,7 @@ impl Ring {
         self.numbers.resize(corners.len(), NONE);
         self.sums.clear();
         for (k, [_, corner]) in corners.iter().enumerate() {
-            let root = self.find(k as u32) as usize;
+            let root = self.sets.find(k as u32) as usize;
             if lacks(*corner) && self.numbers[root] == NONE {
                 self.numbers[root] = self.sums.len() as u32;
                 self.sums.push(DVec3::ZERO);
@@ -201,7 +202,7 @@ impl Ring {
         let base = normals.len() as u32;
         for (k, entry) in corners.iter_mut().enumerate() {
             let [face, corner] = *entry;
-            let root = self.find(k as u32) as usize;
+            let root = self.sets.find(k as u32) as usize;
             let number = self.numbers[root];
             entry[0] = if lacks(corner) { base + number } else { NONE };
             if number != NONE {
@@ -215,15 +216,14 @@ impl Ring {
     /// Links the corners that share a normal.
     fn link(&mut self, sight: &Sight, corners: &[[u32; 2]]) {
         let Sight { obj, first, units, crease } = *sight;
-        self.parent.clear();
-        self.parent.extend(0..corners.len() as u32);
+        self.sets.reset(corners.len());
         self.seen.clear();
         self.crowd.clear();
         for (&[face, corner], here) in corners.iter().zip(0_u32..) {
             let (face, corner) = (face as usize, corner as usize);
             if let Smoothing::Group(group) = obj.smoothing_of(obj.section_at(face)) {
                 let there = self.first_with(u64::from(group), here);
-                self.join(there, here);
+                self.sets.join(there, here);
                 continue;
             }
             let point = |corner: usize| first[obj.corners[corner] as usize];
@@ -234,7 +234,7 @@ impl Ring {
                 let there = self.first_with(u64::from(point(other)), here);
                 let other_face = corners[there as usize][0] as usize;
                 if units[face].dot(units[other_face]) > crease {
-                    self.join(there, here);
+                    self.sets.join(there, here);
                 }
             }
         }
@@ -250,20 +250,6 @@ impl Ring {
             return here;
         }
         *self.crowd.entry(key).or_insert(here)
-    }
-
-    fn find(&mut self, mut x: u32) -> u32 {
-        while self.parent[x as usize] != x {
-            let grandparent = self.parent[self.parent[x as usize] as usize];
-            self.parent[x as usize] = grandparent;
-            x = grandparent;
-        }
-        x
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.find(a), self.find(b));
-        self.parent[a.max(b) as usize] = a.min(b);
     }
 }
 

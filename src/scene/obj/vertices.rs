@@ -3,8 +3,8 @@
 use super::{
     lists::{NONE, Obj},
     normals::NumberMap,
-    weld::mix,
 };
+use crate::math::random::mix;
 
 /// The vertices that differ in position, surface coordinates or normal.
 pub(super) struct Vertices {

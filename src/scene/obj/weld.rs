@@ -2,15 +2,9 @@
 
 use glam::DVec3;
 
-const EMPTY: u32 = u32::MAX;
+use crate::math::random::mix;
 
-/// A good mixture of the bits of `x` (the finalizer of splitmix64).
-#[inline]
-pub(super) fn mix(x: u64) -> u64 {
-    let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    x ^ (x >> 31)
-}
+const EMPTY: u32 = u32::MAX;
 
 /// For every position, the first that has the same coordinates.
 pub(in crate::scene) fn weld(positions: &[DVec3]) -> Vec<u32> {
