@@ -5,7 +5,8 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use anyhow::Context;
-use whitted::film::heatmap::{Scale, write_heatmap, write_rgb8};
+use whitted::film::heatmap::{Scale, write_heatmap};
+use whitted::film::write_rgb8;
 use whitted::film::{OutputFile, WholeFile};
 use whitted::scene::{self, LoadOptions, Loaded, SceneError};
 use whitted::study::{Plan, Portrait, Step, Study, charts, report};

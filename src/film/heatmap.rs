@@ -2,6 +2,8 @@
 
 use std::io::{self, Write};
 
+use super::write_rgb8;
+
 /// From black over violet and orange to pale yellow, even steps to the eye; sRGB.
 ///
 /// Source: nine entries of the map `inferno` of matplotlib (van der Walt & Smith, CC0).
@@ -69,25 +71,6 @@ pub fn write_heatmap(
     let bytes: Vec<u8> = values.iter().flat_map(|value| scale.color(*value)).collect();
     let height = (values.len() / width.max(1) as usize) as u32;
     write_rgb8(&bytes, width, height, writer)
-}
-
-/// Writes 8-bit sRGB bytes as a PNG.
-///
-/// # Errors
-/// Those of the writer, and a number of bytes that does not fit the size.
-pub fn write_rgb8(bytes: &[u8], width: u32, height: u32, writer: impl Write) -> io::Result<()> {
-    let write = || {
-        let mut encoder = png::Encoder::new(writer, width, height);
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.set_depth(png::BitDepth::Eight);
-        let mut writer = encoder.write_header()?;
-        writer.write_image_data(bytes)?;
-        writer.finish()
-    };
-    write().map_err(|error| match error {
-        png::EncodingError::IoError(error) => error,
-        other => io::Error::new(io::ErrorKind::InvalidInput, other.to_string()),
-    })
 }
 
 #[cfg(test)]

@@ -20,7 +20,7 @@ mod tile;
 pub mod whole_file;
 
 pub use self::exr::write_exr;
-pub use self::png::write_png;
+pub use self::png::{write_png, write_rgb8};
 pub use error::ImageError;
 pub use label::{Label, Share};
 pub use merge::{MergeError, merge, read_label};

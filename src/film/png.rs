@@ -29,6 +29,24 @@ pub fn write_png(film: &Film, label: Option<&Label>, writer: impl Write) -> io::
     })
 }
 
+/// Writes 8-bit sRGB bytes, row by row, as a PNG.
+///
+/// # Errors
+/// Those of the writer, and a number of bytes that does not fit the size.
+pub fn write_rgb8(bytes: &[u8], width: u32, height: u32, writer: impl Write) -> io::Result<()> {
+    let row = 3 * width as usize;
+    if bytes.len() as u64 != row as u64 * u64::from(height) {
+        let error = format!("{} bytes are not {width} x {height} pixels", bytes.len());
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, error));
+    }
+    let mut rows = bytes.chunks_exact(row.max(1));
+    write_rows([width, height], None, writer, &mut |row| {
+        row.clear();
+        row.extend_from_slice(rows.next().unwrap_or_default());
+        Ok(())
+    })
+}
+
 /// Writes a file whose rows, three bytes a pixel, come one after another from `next`; four bytes if the label says that pixels
 /// are missing.
 pub(super) fn write_rows(
