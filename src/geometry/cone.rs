@@ -170,7 +170,6 @@ impl Cone {
         let p2 = difference_of_products(f.z, e.y, f.y, e.z);
         let w = difference_of_products(f.x, e.z, f.z, e.x).abs();
         let m = hypot(p1, p2);
-        let flip = |v: DVec3| DVec3::new(v.x, -v.y, v.z);
         let a = dot(flip(e), e);
         // A line within the cone's slope (a < 0) always meets it; only rounding can say otherwise.
         let gap = if a < 0.0 { (m - w).max(0.0) } else { m - w };
@@ -261,8 +260,7 @@ impl Cone {
             let ahead = self.inside(q, d, above_base.max(0.0));
             return leaving(ahead);
         }
-        let a = dot(DVec3::new(e.x, -e.y, e.z), e);
-        let b = dot(DVec3::new(f.x, -f.y, f.z), e);
+        let (a, b) = (dot(flip(e), e), dot(flip(f), e));
         let far = if a > 0.0 { (-2.0 * b / a).max(f64::MIN_POSITIVE) } else { f64::INFINITY };
         match self.ends {
             Ends::Closed => leaving(Interval::new(0.0, far).above(above_base, d.y, BASE)),
@@ -307,4 +305,10 @@ impl Cone {
         let onto = self.radius * along / rho;
         DVec3::new(q.x * onto, -self.height * along, q.z * onto)
     }
+}
+
+/// The vector whose dot product with another is the quadratic form x² − y² + z² of the unit cone.
+#[inline(always)]
+fn flip(v: DVec3) -> DVec3 {
+    DVec3::new(v.x, -v.y, v.z)
 }

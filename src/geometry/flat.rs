@@ -16,7 +16,11 @@ use super::{
     ray::Ray,
     shape_error::ShapeError,
 };
-use crate::math::{self, compensated::two_sum, cross, difference_of_products, scale};
+use crate::math::{
+    self,
+    compensated::{fused_dot, two_sum},
+    cross, difference_of_products, scale,
+};
 
 /// The shear that turns a direction into the third axis.
 #[derive(Clone, Copy)]
@@ -99,7 +103,7 @@ impl Outline {
 /// hit there.
 #[inline(always)]
 pub(super) fn parameter(vertex: DVec3, normal: DVec3, origin: DVec3, dir: DVec3) -> f64 {
-    let t = dot(normal, vertex - origin) / dot(normal, dir);
+    let t = fused_dot(normal, vertex - origin) / fused_dot(normal, dir);
     if t.is_finite() { t } else { f64::NAN }
 }
 
@@ -160,7 +164,7 @@ pub(super) fn surface(
 ) -> Surface {
     let (near, near_rest) = sum(origin, dir * t + rest);
     let (away, away_rest) = sum(near, -vertex);
-    let height = math::dot(normal, away) + dot(normal, away_rest + near_rest);
+    let height = math::dot(normal, away) + fused_dot(normal, away_rest + near_rest);
     // Back into the plane along the ray, where the exact point is.
     let back = height / math::dot(normal, dir);
     let (back, straight) = (dir * back, normal * height);
@@ -181,12 +185,6 @@ pub(super) fn surface(
 fn sum(a: DVec3, b: DVec3) -> (DVec3, DVec3) {
     let [x, y, z] = [two_sum(a.x, b.x), two_sum(a.y, b.y), two_sum(a.z, b.z)];
     (DVec3::new(x.0, y.0, z.0), DVec3::new(x.1, y.1, z.1))
-}
-
-/// The dot product with a rounding less a term than the plain one.
-#[inline(always)]
-fn dot(a: DVec3, b: DVec3) -> f64 {
-    a.x.mul_add(b.x, a.y.mul_add(b.y, a.z * b.z))
 }
 
 /// The unit normal of the outline through `vertices`: the direction of its vector area, a sum over the fan of triangles

@@ -1,4 +1,4 @@
-//! Sums of products that do not cancel.
+//! Sums of products that do not cancel, or little.
 //!
 //! Every function here relies on the fused multiply-add: `mul_add` is the machine's instruction where the
 //! calling code was compiled for it and an exact library call elsewhere, with the same result.
@@ -44,6 +44,12 @@ pub(crate) fn dot_parts(a: DVec3, b: DVec3) -> (f64, f64) {
     let (k, error_k) = two_product(a.z, b.z);
     let (sum, error_sum) = two_sum(s, k);
     (sum, (error_p + (error_h + error_s)) + (error_k + error_sum))
+}
+
+/// The dot product with three roundings instead of five; it may cancel.
+#[inline(always)]
+pub(crate) fn fused_dot(a: DVec3, b: DVec3) -> f64 {
+    a.x.mul_add(b.x, a.y.mul_add(b.y, a.z * b.z))
 }
 
 /// `√(a² + b²)`; squares may overflow, which normalised coordinates rule out.

@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use super::compensated::fused_dot;
+
 /// Three unit vectors at right angles; `y` is the axis of a cylinder or cone.
 ///
 /// An axis along a coordinate axis gives a frame of coordinate axes, so that changing to it is exact.
@@ -31,7 +33,7 @@ impl Frame {
     /// The vector `v` of the surrounding space in this frame.
     #[inline(always)]
     pub fn to_local(self, v: DVec3) -> DVec3 {
-        DVec3::new(dot(self.x, v), dot(self.y, v), dot(self.z, v))
+        DVec3::new(fused_dot(self.x, v), fused_dot(self.y, v), fused_dot(self.z, v))
     }
 
     /// The vector of the surrounding space that is `v` in this frame.
@@ -48,11 +50,6 @@ impl Frame {
     pub fn axis(self) -> DVec3 {
         self.y
     }
-}
-
-#[inline(always)]
-fn dot(a: DVec3, b: DVec3) -> f64 {
-    a.x.mul_add(b.x, a.y.mul_add(b.y, a.z * b.z))
 }
 
 #[cfg(test)]
