@@ -9,7 +9,7 @@ use super::{
     frame::Entry,
     leaf::{Candidates, LeafRay},
     node::Content,
-    simd::{Kernel, Simd},
+    simd::{Kernel, Simd, bits},
     target::Left,
     tree::Tree,
     walk::{Visitor, walk},
@@ -126,11 +126,9 @@ where
     /// without further ado.
     #[inline(always)]
     fn take<S: Simd>(&mut self, simd: S, first: u32, candidates: &Candidates) -> bool {
-        let Candidates { mut maybe, certain, .. } = *candidates;
-        while maybe != 0 {
-            let lane = maybe.trailing_zeros() & 7;
-            maybe &= maybe - 1;
-            let place = (first + lane) as usize;
+        let Candidates { maybe, certain, .. } = *candidates;
+        for lane in bits(maybe) {
+            let place = first as usize + lane;
             let certain = certain & 1 << lane != 0;
             if certain && (self.test.opaque)(self.test.accel.numbers[place]) {
                 return true;

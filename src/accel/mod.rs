@@ -220,7 +220,7 @@ impl Accel {
         *hits = HitLanes::NONE;
         for k in lanes(rays.used) {
             if let Some(hit) = self.nearest(&rays.ray(k), f64::INFINITY) {
-                (hits.t[k], hits.primitive[k], hits.face[k]) = (hit.t, hit.primitive, hit.face);
+                hits.set(k, &hit);
             }
         }
     }

@@ -7,7 +7,7 @@ use super::{
     frame::{Entry, TreeRay},
     leaf::{Candidates, LeafRay},
     node::Content,
-    simd::{Kernel, Simd},
+    simd::{Kernel, Simd, bits},
     target::{Left, prefetch},
     tree::Tree,
     walk::{Visitor, walk},
@@ -164,16 +164,14 @@ impl<'a> Search<'a> {
     /// A pending hit loses to one that ends before it starts; where intervals overlap, both are decided.
     #[inline(always)]
     fn take<S: Simd>(&mut self, simd: S, first: u32, candidates: &Candidates) {
-        let Candidates { mut maybe, certain, from, to } = *candidates;
-        while maybe != 0 {
-            let lane = maybe.trailing_zeros() & 7;
-            maybe &= maybe - 1;
-            let place = first + lane;
+        let Candidates { maybe, certain, from, to } = *candidates;
+        for lane in bits(maybe) {
+            let place = first + lane as u32;
             if certain & 1 << lane == 0 {
                 self.decide(simd, place, false);
                 continue;
             }
-            let (from, to) = (from.0[lane as usize], to.0[lane as usize]);
+            let (from, to) = (from.0[lane], to.0[lane]);
             if from > self.limit {
                 continue;
             }

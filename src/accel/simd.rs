@@ -110,6 +110,19 @@ pub(super) trait Simd: Copy {
     fn le(self, a: Self::F, b: Self::F) -> u32;
 }
 
+/// The lanes of which a mask such as that of [`Simd::le`] has the bit.
+#[inline(always)]
+pub(super) fn bits(mut mask: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        if mask == 0 {
+            return None;
+        }
+        let lane = (mask.trailing_zeros() & 7) as usize;
+        mask &= mask - 1;
+        Some(lane)
+    })
+}
+
 /// Plain arithmetic, for every machine.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Portable;

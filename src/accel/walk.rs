@@ -9,7 +9,7 @@ use std::mem::MaybeUninit;
 use super::{
     frame::TreeRay,
     node::{Child, Content, Node, WIDTH},
-    simd::Simd,
+    simd::{Simd, bits},
     tree::Tree,
 };
 
@@ -164,9 +164,7 @@ pub(super) fn walk<S: Simd, const SORTED: bool>(
                 stack.push(a.min(b));
                 tree.prefetch_node(simd, node.children[first]);
                 tree.prefetch_node(simd, node.children[second]);
-                while met != 0 {
-                    let next = (met.trailing_zeros() & 7) as usize;
-                    met &= met - 1;
+                for next in bits(met) {
                     stack.push(key(enter[next], node.children[next]));
                     tree.prefetch_node(simd, node.children[next]);
                     if SORTED {

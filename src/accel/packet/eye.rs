@@ -21,8 +21,8 @@ use crate::{
         beam::{Axis, Singles},
         frame::{above, below},
         leaf::{Candidates, cross, dot, splat, sub},
-        node::{Run, WIDTH},
-        simd::{Lanes, Simd},
+        node::Run,
+        simd::{Lanes, Simd, bits},
         tree::Tree,
     },
     geometry::lanes::{LANES, lanes},
@@ -262,14 +262,4 @@ fn in_groups(column: &Singles, better: impl Fn(f32, f32) -> f32) -> [f32; GROUPS
         all[k] = better(fours[2 * k], fours[2 * k + 1]);
     }
     all
-}
-
-/// The places of the bits that are set.
-#[inline(always)]
-fn bits(mut bits: u32) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let bit = bits.trailing_zeros() as usize;
-        bits &= bits.wrapping_sub(1);
-        (bit < WIDTH).then_some(bit)
-    })
 }

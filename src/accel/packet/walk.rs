@@ -7,7 +7,7 @@ use crate::{
     accel::{
         leaf::Candidates,
         node::{Child, Content},
-        simd::Simd,
+        simd::{Simd, bits},
         tree::Tree,
         walk::MAX_DEPTH,
     },
@@ -46,12 +46,10 @@ impl Packet {
             if let Content::Node(k) = visit.child.content() {
                 #[cfg(feature = "leaf-study")]
                 study::count_beam();
-                let (mut met, enter) = self.beam.test(simd, &tree.nodes[k], limit);
+                let (met, enter) = self.beam.test(simd, &tree.nodes[k], limit);
                 let enter = simd.store(enter).0;
                 let base = len;
-                while met != 0 {
-                    let slot = (met.trailing_zeros() & 7) as usize;
-                    met &= met - 1;
+                for slot in bits(met) {
                     let child = tree.nodes[k].children[slot];
                     tree.prefetch(simd, child);
                     let next =
@@ -130,10 +128,7 @@ impl Packet {
         candidates: &Candidates,
     ) {
         let Candidates { maybe, certain, from, to } = candidates;
-        let mut maybe = *maybe;
-        while maybe != 0 {
-            let lane = (maybe.trailing_zeros() & 7) as usize;
-            maybe &= maybe - 1;
+        for lane in bits(*maybe) {
             let bounds = [from.0[lane], to.0[lane]];
             let certain = (certain >> lane & 1 != 0).then_some(bounds);
             searches.take(simd, self, k, first + lane as u32, certain);

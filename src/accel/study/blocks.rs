@@ -4,7 +4,7 @@ use super::{
     super::{
         leaf::{LeafRay, Spheres, Triangles, cross, dot, splat, sub},
         node::{Content, Run},
-        simd::{Lanes, Simd},
+        simd::{Lanes, Simd, bits},
         tree::Tree,
     },
     EPSILON, count_leaf, is_naive,
@@ -59,11 +59,9 @@ impl Found {
     /// Calls `take(place, t)`, `t` being the tree's, for every hit, until it returns that it stops; returns whether it did.
     #[inline(always)]
     pub(in crate::accel) fn for_each(&self, mut take: impl FnMut(u32, f32) -> bool) -> bool {
-        for (mut hits, t) in self.hits.into_iter().zip(&self.t) {
-            while hits != 0 {
-                let lane = hits.trailing_zeros() & 7;
-                hits &= hits - 1;
-                if take(self.first + lane, t.0[lane as usize]) {
+        for (hits, t) in self.hits.into_iter().zip(&self.t) {
+            for lane in bits(hits) {
+                if take(self.first + lane as u32, t.0[lane]) {
                     return true;
                 }
             }
