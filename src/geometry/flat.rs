@@ -8,11 +8,14 @@
 //! Source: Woop, Benthin & Wald, "Watertight Ray/Triangle Intersection", *Journal of Computer Graphics Techniques*
 //! 2(1), 2013, with an exact sign in place of its double-precision fallback.
 
+use std::ops::Range;
+
 use glam::{DVec2, DVec3};
 
 use super::{
     Bounds,
     hit::{Crossing, Surface},
+    lanes::{Column, LANES, RayLanes},
     ray::Ray,
     shape_error::ShapeError,
 };
@@ -21,6 +24,9 @@ use crate::math::{
     compensated::{fused_dot, two_sum},
     cross, difference_of_products, scale,
 };
+
+/// How far a crossing may be moved back along the ray into its plane, of the lengths at hand.
+const FURTHEST_BACK: f64 = 1.0 / (1 << 20) as f64;
 
 /// The shear that turns a direction into the third axis.
 #[derive(Clone, Copy)]
@@ -107,6 +113,43 @@ pub(super) fn parameter(vertex: DVec3, normal: DVec3, origin: DVec3, dir: DVec3)
     if t.is_finite() { t } else { f64::NAN }
 }
 
+/// Whether a ray runs so nearly within a plane that rounding may have moved their crossing far along it.
+///
+/// What the leaves of the tree call certain is not: there the sine of the angle is 2⁻¹⁹ at least.
+#[inline(always)]
+fn is_grazing(normal: DVec3, dir: DVec3) -> bool {
+    const SINE: f64 = 1.0 / (1 << 21) as f64;
+    // True on NaN.
+    !(fused_dot(normal, dir).abs() >= SINE * (largest(normal) * largest(dir)))
+}
+
+/// The parameter, of those at which the line of a ray is in the box about `vertices`, that is nearest to `t`; NaN if that is.
+///
+/// So a crossing that rounding has moved is still one with the shape, and whoever looks for it by boxes finds it.
+#[cold]
+fn within(vertices: &[DVec3], origin: DVec3, dir: DVec3, t: f64) -> f64 {
+    if t.is_nan() {
+        return t;
+    }
+    let Bounds { min, max } = Bounds::of_points(vertices.iter().copied());
+    let (mut enter, mut exit) = (f64::NEG_INFINITY, f64::INFINITY);
+    for axis in (0..3).filter(|axis| dir[*axis] != 0.0) {
+        let [a, b] = [min, max].map(|corner| (corner[axis] - origin[axis]) / dir[axis]);
+        enter = enter.max(a.min(b));
+        exit = exit.min(a.max(b));
+    }
+    // Where it touches the box, rounding may leave no room.
+    t.max(enter.min(exit)).min(exit.max(enter))
+}
+
+/// The largest component, in magnitude.
+#[inline(always)]
+fn largest(v: DVec3) -> f64 {
+    let v = v.abs();
+    let xy = if v.x > v.y { v.x } else { v.y };
+    if xy > v.z { xy } else { v.z }
+}
+
 /// The crossing of the line of `ray` with the convex polygon of `vertices`, whose plane is square to `normal`.
 #[inline(always)]
 pub(super) fn crossing(vertices: &[DVec3], normal: DVec3, ray: &Ray) -> Crossing {
@@ -127,29 +170,43 @@ pub(super) fn crossing_of(
     if !outline.is_passed() {
         return Crossing::NONE;
     }
-    plane_crossing(vertices[0], normal(), ray)
+    let normal = normal();
+    let t = parameter(vertices[0], normal, ray.origin, ray.dir);
+    if is_grazing(normal, ray.dir) {
+        return Crossing::at(within(vertices, ray.origin, ray.dir, t));
+    }
+    Crossing::at(t)
 }
 
-/// The crossing of the line of `ray` with the plane through `vertex` square to `normal`.
+/// The same, to the bit, for some `lanes` of rays: the parameters, or NaN, and no second ones.
 #[inline(always)]
-pub(super) fn plane_crossing(vertex: DVec3, normal: DVec3, ray: &Ray) -> Crossing {
-    Crossing::at(parameter(vertex, normal, ray.origin, ray.dir))
-}
-
-/// The parameter of [`crossing`], or NaN; without a branch, for loops over lanes.
-#[inline(always)]
-pub(super) fn crossing_parameter<const N: usize>(
+pub(super) fn cross_lanes<const N: usize>(
     vertices: &[DVec3; N],
     normal: DVec3,
-    origin: DVec3,
-    dir: DVec3,
-) -> f64 {
-    let mut outline = Outline::new(origin, dir, vertices[N - 1]);
-    for vertex in vertices {
-        outline.next(*vertex);
+    rays: &RayLanes,
+    lanes: Range<usize>,
+    [first, second]: &mut [Column; 2],
+) {
+    let vertices = *vertices;
+    let mut grazing = [0_u64; LANES];
+    let lanes = lanes.start.min(LANES)..lanes.end.min(LANES);
+    for k in lanes.clone() {
+        let (origin, dir) = (rays.origin.get(k), rays.dir.get(k));
+        let mut outline = Outline::new(origin, dir, vertices[N - 1]);
+        for vertex in &vertices {
+            outline.next(*vertex);
+        }
+        let t = parameter(vertices[0], normal, origin, dir);
+        first[k] = if outline.is_passed() { t } else { f64::NAN };
+        second[k] = f64::NAN;
+        grazing[k] = u64::from(is_grazing(normal, dir));
     }
-    let t = parameter(vertices[0], normal, origin, dir);
-    if outline.is_passed() { t } else { f64::NAN }
+    if lanes.clone().fold(0, |any, k| any | grazing[k]) != 0 {
+        for k in lanes.filter(|k| grazing[*k] != 0) {
+            let (origin, dir) = (rays.origin.get(k), rays.dir.get(k));
+            first[k] = within(&vertices, origin, dir, first[k]);
+        }
+    }
 }
 
 /// The surface of the plane through `vertex` square to the unit vector `normal`, where the ray along `dir` from `origin`
@@ -168,10 +225,9 @@ pub(super) fn surface(
     // Back into the plane along the ray, where the exact point is.
     let back = height / math::dot(normal, dir);
     let (back, straight) = (dir * back, normal * height);
-    let is_finite = (back.x.abs() < f64::INFINITY)
-        & (back.y.abs() < f64::INFINITY)
-        & (back.z.abs() < f64::INFINITY);
-    let pick = |x: f64, y: f64| if is_finite { x } else { y };
+    // Unless the ray is in the plane but for rounding; false on NaN.
+    let is_near = largest(back) <= FURTHEST_BACK * (largest(dir * t) + largest(away));
+    let pick = |x: f64, y: f64| if is_near { x } else { y };
     let back =
         DVec3::new(pick(back.x, straight.x), pick(back.y, straight.y), pick(back.z, straight.z));
     let (point, point_rest) = sum(near, near_rest - back);

@@ -1,11 +1,14 @@
 //! The parallelogram q + u e₁ + v e₂ with 0 ≤ u, v ≤ 1, which are its surface coordinates; its front is where e₁ × e₂
 //! points.
 
+use std::ops::Range;
+
 use glam::{DVec2, DVec3};
 
 use super::{
     Bounds, Similarity, flat,
     hit::{Crossing, Crossings, Surface},
+    lanes::{Column, RayLanes},
     ray::Ray,
     shape_error::ShapeError,
 };
@@ -52,10 +55,15 @@ impl Quad {
         [flat::crossing(&self.vertices, self.normal, ray), Crossing::NONE]
     }
 
-    /// The parameter of the crossing, or NaN.
+    /// [`Shape::cross_lanes`](super::Shape::cross_lanes).
     #[inline(always)]
-    pub(super) fn parameter(&self, origin: DVec3, dir: DVec3) -> f64 {
-        flat::crossing_parameter(&self.vertices, self.normal, origin, dir)
+    pub(super) fn cross_lanes(
+        &self,
+        rays: &RayLanes,
+        lanes: Range<usize>,
+        crossed: &mut [Column; 2],
+    ) {
+        flat::cross_lanes(&self.vertices, self.normal, rays, lanes, crossed);
     }
 
     #[inline(always)]

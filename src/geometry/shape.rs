@@ -115,20 +115,14 @@ impl Shape {
         crossed: &mut [Column; 2],
     ) -> bool {
         let lanes = lanes.start.min(LANES)..lanes.end.min(LANES);
-        let (origin, dir) = (rays.origin, rays.dir);
-        let [first, second] = crossed;
         match self {
             Self::Sphere(s) => {
+                let ((origin, dir), [first, second]) = ((rays.origin, rays.dir), crossed);
                 for k in lanes {
                     (first[k], second[k]) = s.parameters(origin.get(k), dir.get(k));
                 }
             }
-            Self::Quad(s) => {
-                let shape = **s;
-                for k in lanes {
-                    (first[k], second[k]) = (shape.parameter(origin.get(k), dir.get(k)), f64::NAN);
-                }
-            }
+            Self::Quad(s) => s.cross_lanes(rays, lanes, crossed),
             Self::Triangle(s) => triangle::cross_lanes(&s.vertices(), rays, lanes, crossed),
             Self::Face(s) => triangle::cross_lanes(&s.vertices(), rays, lanes, crossed),
             _ => return false,

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::{
     Bounds, Similarity, flat,
     hit::{Crossing, Crossings, Surface},
-    lanes::{Column, LANES, RayLanes, Vectors},
+    lanes::{Column, RayLanes, Vectors},
     ray::Ray,
     shape_error::ShapeError,
 };
@@ -69,7 +69,7 @@ pub(crate) fn crossing(corners: &[DVec3; 3], ray: &Ray) -> Crossing {
 /// The same, to the bit, for a triangle that is known to be crossed.
 #[inline(always)]
 pub(crate) fn certain_crossing(corners: &[DVec3; 3], ray: &Ray) -> Crossing {
-    flat::plane_crossing(corners[0], doubled_area(corners), ray)
+    Crossing::at(flat::parameter(corners[0], doubled_area(corners), ray.origin, ray.dir))
 }
 
 /// Triangles side by side that are known to be crossed by the rays in their lanes.
@@ -102,14 +102,9 @@ pub(crate) fn cross_lanes(
     corners: &[DVec3; 3],
     rays: &RayLanes,
     lanes: Range<usize>,
-    [first, second]: &mut [Column; 2],
+    crossed: &mut [Column; 2],
 ) {
-    let (corners, area) = (*corners, doubled_area(corners));
-    for k in lanes.start.min(LANES)..lanes.end.min(LANES) {
-        let (origin, dir) = (rays.origin.get(k), rays.dir.get(k));
-        first[k] = flat::crossing_parameter(&corners, area, origin, dir);
-        second[k] = f64::NAN;
-    }
+    flat::cross_lanes(corners, doubled_area(corners), rays, lanes, crossed);
 }
 
 /// The cross product of two edges, scaled so that it is zero only if the corners lie on one line.

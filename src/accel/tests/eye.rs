@@ -56,7 +56,13 @@ fn eyes(mesh: &[[DVec3; 3]], center: DVec3, random: &mut Random) -> Vec<DVec3> {
 }
 
 /// Asserts that the packet of rays from `eye` to `goals` finds what each ray meets first, and which are blocked on their way back.
-fn check(name: &str, shapes: &[Shape], accel: &Accel, eye: DVec3, goals: &[DVec3; LANES]) -> bool {
+pub(super) fn check(
+    name: &str,
+    shapes: &[Shape],
+    accel: &Accel,
+    eye: DVec3,
+    goals: &[DVec3; LANES],
+) -> bool {
     let (mut origin, mut dir, mut hits) = (Vectors::ZERO, Vectors::ZERO, HitLanes::NONE);
     let (mut start, mut way) = (Vectors::ZERO, Vectors::ZERO);
     let rays: Vec<Ray> = goals.iter().map(|goal| Ray::new(eye, goal - eye)).collect();

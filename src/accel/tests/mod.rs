@@ -1,5 +1,6 @@
 //! Every answer is that of the brute-force reference, to the bit, with any instructions.
 
+mod edge_on;
 mod eye;
 mod lanes;
 mod packets;
