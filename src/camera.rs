@@ -110,17 +110,25 @@ pub struct View {
 impl View {
     /// Where a point in front of the camera is on the film, in pixels as for [`View::ray`], and the length that a pixel covers there.
     pub fn place(&self, point: DVec3) -> Option<(DVec2, f64)> {
-        let pixel = self.right.length();
-        let forward = self.down.cross(self.right).normalize();
-        let forward = if forward.dot(self.corner) < 0.0 { -forward } else { forward };
-        let to = point - self.eye;
-        let depth = to.dot(forward);
+        let (pixel, to, depth) = (self.pixel(), point - self.eye, self.depth(point));
         if !(depth > 0.0) {
             return None;
         }
         let off = to / depth - self.corner;
         let place = DVec2::new(off.dot(self.right), off.dot(self.down)) / (pixel * pixel);
         Some((place, pixel * depth))
+    }
+
+    /// How far in front of the eye a point is, along the axis of the view; negative behind it.
+    pub fn depth(&self, point: DVec3) -> f64 {
+        let forward = self.down.cross(self.right).normalize();
+        let forward = if forward.dot(self.corner) < 0.0 { -forward } else { forward };
+        (point - self.eye).dot(forward)
+    }
+
+    /// The length that a pixel covers at depth 1.
+    pub fn pixel(&self) -> f64 {
+        self.right.length()
     }
 
     /// The ray, of unit direction, through a place on the film in pixels from its upper left corner: the centre of the first

@@ -178,11 +178,15 @@ impl Spread {
     /// More kinds of surfaces mean more edges, which even patterns deal with less well; so do changes all around, where edges
     /// of two kinds may be many: `busy` is how far, in logarithms, the error goes to that of random samples. But no mean is worse than that of random samples.
     pub fn error(&self, kappa: f32, busy: f32) -> f32 {
+        self.share(kappa, busy) * self.variance()
+    }
+
+    /// The share of the variance that is left of it there.
+    pub fn share(&self, kappa: f32, busy: f32) -> f32 {
         let edges = self.kinds().max(2) as f32 - 1.0;
         let random = 1.0 / self.count.max(1) as f32;
         let share = (kappa * edges.powf(0.45)).min(random);
-        let share = if busy > 0.0 { share * (random / share).powf(busy) } else { share };
-        share * self.variance()
+        if busy > 0.0 { share * (random / share).powf(busy) } else { share }
     }
 }
 

@@ -7,6 +7,9 @@ use super::estimate::{BUSY, Spread, all_alike, quarters_share, sequence_share, s
 use super::levels::{levels, squared_distance};
 use crate::color::Rgb;
 
+/// The most kinds of things in a pixel with something thin and little else.
+const MOST_WITH_THIN: usize = 3;
+
 /// A camera ray's answer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
@@ -14,7 +17,7 @@ pub struct Sample {
     pub color: Rgb,
     /// What the ray and those that came of it met: equal for equal trees of surfaces, lights and pattern cells.
     pub signature: u32,
-    /// A number of the cell of the pattern that the camera ray itself met; 0 for none.
+    /// A number of the cells of patterns that show, directly or by what is reflected and transmitted; 0 for none.
     pub cell: u32,
     /// How many rays it took, those towards the lights included.
     pub rays: u32,
@@ -59,6 +62,8 @@ pub struct Refined {
     points: u32,
     stage: Stage,
     spread: Spread,
+    /// The sum of the linear colours and of their squares, of all that is in `spread`.
+    linear: [Rgb; 2],
     quarters: Quarters,
 }
 
@@ -109,11 +114,21 @@ impl Refined {
         let mut spread = Spread::about(origin);
         spread.add(origin, center.signature);
         let mut cross = center.color * 0.5;
+        let mut linear = [center.color, center.color * center.color];
         for (color, signature) in corners {
+            linear = [linear[0] + color, linear[1] + color * color];
             cross += *color * 0.125;
             spread.add(levels(*color), *signature);
         }
-        Self { cross, sum: Rgb::ZERO, points: 0, stage, spread, quarters: Quarters::default() }
+        Self {
+            cross,
+            sum: Rgb::ZERO,
+            points: 0,
+            stage,
+            spread,
+            linear,
+            quarters: Quarters::default(),
+        }
     }
 
     /// Announces that the samples of a stage come next.
@@ -128,12 +143,18 @@ impl Refined {
         self.quarters.add(self.points, levels);
         self.sum += sample.color;
         self.points += 1;
+        self.linear = [self.linear[0] + sample.color, self.linear[1] + sample.color * sample.color];
         self.spread.add(levels, sample.signature);
     }
 
     /// How many samples of the sequence there are.
     pub fn points(&self) -> u32 {
         self.points
+    }
+
+    /// Whether all samples met the same.
+    pub fn is_alike(&self) -> bool {
+        self.spread.kinds() == 1
     }
 
     /// The pixel's colour: the mean of the sequence; few samples are helped by centre and corners.
@@ -159,6 +180,21 @@ impl Refined {
         let quartered = self.stage.quarters * self.quarters.variance();
         let error = |seen: f32| self.with_unseen(seen, contrast, busy);
         (error(seen.max(quartered)), error(quartered))
+    }
+
+    /// The squared error of a pixel in which something thin is before or behind little else: few samples meet it, and the mean is off
+    /// by light rather than by levels, which are far apart where there is little light. `None` of a crowd, of which levels tell.
+    pub fn error_of_thin(&self) -> Option<f32> {
+        if self.spread.kinds() > MOST_WITH_THIN {
+            return None;
+        }
+        let count = self.spread.count().max(2) as f32;
+        let [sum, squares] = self.linear;
+        let mean = sum / count;
+        let variance = (squares - sum * mean).max(Rgb::ZERO) / (count - 1.0);
+        let off = (variance * self.spread.share(self.stage.share, BUSY)).map(f32::sqrt);
+        let color = self.color();
+        Some(squared_distance(levels(color + off), levels(color - off)) / 4.0)
     }
 
     /// The error with that of what may hide between the samples: little if they all met the same; much if they met different things

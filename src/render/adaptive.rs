@@ -225,6 +225,11 @@ impl Adaptive {
         self.known.outlooks.values().iter().any(Outlook::can_improve)
     }
 
+    /// Whether a pixel is to get more rays whatever its error.
+    pub(super) fn is_due(&self) -> bool {
+        self.known.outlooks.values().iter().any(Outlook::is_due)
+    }
+
     /// How many pixels got all the rays they may get, and have a squared error of at least `limit`.
     pub(super) fn unsettled(&self, limit: f32) -> usize {
         let is_unsettled = |p: &&Pixel| {

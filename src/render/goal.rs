@@ -111,7 +111,8 @@ impl Unfinished {
         if self.is_in_step {
             return None;
         }
-        if self.adaptive.estimated_rmse() <= wanted {
+        // What is not sampled yet where something is known to be is in no estimate.
+        if !self.adaptive.is_due() && self.adaptive.estimated_rmse() <= wanted {
             return Some(outcome);
         }
         let is_over = self.step > LAST_STEP || !self.adaptive.can_improve();

@@ -73,10 +73,12 @@ impl Known {
                     let skips = look.suspect && skips_cells(centers, x, y, look.contrast);
                     let cells = if skips { LEAST_IN_CELLS } else { 0 };
                     let error = look.center_error(look.inner);
+                    let thin = least(x, y);
                     let pixel = Pixel {
                         suspect: look.suspect,
                         error,
-                        least: least(x, y).max(cells),
+                        is_thin: thin > 0,
+                        least: thin.max(cells),
                         contrast: look.contrast,
                         busy: look.busy,
                         ..Pixel::default()

@@ -78,6 +78,11 @@ impl Outlook {
         self.error > 0.0
     }
 
+    /// Whether a pixel is to get more rays whatever its error.
+    pub(super) fn is_due(&self) -> bool {
+        self.error == f32::INFINITY
+    }
+
     /// Whether a pixel may be above the threshold; never false if one is.
     pub(super) fn may_exceed(&self, threshold: Threshold) -> bool {
         // A quotient and a product may be rounded to different sides.

@@ -22,6 +22,9 @@ use crate::{
 /// Samples that are taken without looking at the clock.
 const AT_ONCE: usize = 512;
 
+/// How many times as many samples as usual it takes to meet what touches a pixel with a part only.
+const IN_A_CORNER: u32 = 4;
+
 /// When a pixel gets more rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Threshold {
@@ -53,6 +56,8 @@ pub(super) struct Pixel {
     pub(super) contrast: f32,
     /// How often things change around, from 0 to 1; zero unless suspect.
     pub(super) busy: f32,
+    /// Whether something thin is known to be in it.
+    pub(super) is_thin: bool,
     /// Samples of the sequence that it gets whatever its error.
     pub(super) least: u32,
     pub(super) refined: Option<Box<Refined>>,
@@ -65,8 +70,12 @@ impl Pixel {
     }
 
     /// Whether it is to get more samples whatever its error.
+    ///
+    /// Where something thin is known to be and nothing of it was met, it may be in a corner.
     pub(super) fn is_due(&self) -> bool {
-        self.points() < self.least
+        let is_alike = self.refined.as_ref().is_some_and(|refined| refined.is_alike());
+        let times = if self.is_thin && is_alike { IN_A_CORNER } else { 1 };
+        self.points() < self.least.saturating_mul(times)
     }
 }
 
@@ -149,7 +158,10 @@ impl Round<'_> {
     /// Takes over what is known of a pixel after a stage.
     fn judge(&self, one: &mut Chosen, refined: Box<Refined>) {
         let pixel = &mut one.pixel;
-        let (error, expected) = refined.errors(pixel.contrast, pixel.busy);
+        let (mut error, mut expected) = refined.errors(pixel.contrast, pixel.busy);
+        if let Some(thin) = refined.error_of_thin().filter(|_| pixel.is_thin) {
+            (error, expected) = (error.max(thin), thin);
+        }
         (pixel.error, pixel.refined) = (error, Some(refined));
         pixel.stage += 1;
         one.worth = Worth::of(pixel, expected, self.stages, self.centers.at(one.x, one.y));

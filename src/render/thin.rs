@@ -1,6 +1,6 @@
 //! Things thinner than a pixel, which samples would find by chance alone: where they are is known from the scene.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::plane::{Area, Plane};
 use crate::{camera::View, scene::Scene};
@@ -13,24 +13,41 @@ const ACROSS: f64 = 2.0;
 /// The least number of samples of pixels that something thin touches, as the camera sees it; 0 elsewhere.
 ///
 /// Thin are spheres, cylinders, cones and pieces of meshes narrower than a pixel and a half, hidden or not: two samples across their
-/// width, as even as those are, meet what lies across a pixel. None if there is nothing thin.
+/// width, as even as those are, meet what lies across a pixel, and as many along it what ends there. None if there is nothing thin.
 pub(super) fn least_samples(scene: &Scene, view: &View, area: &Area) -> Option<Plane<u32>> {
     let mut least: Option<Plane<u32>> = None;
     let primitives = 0..scene.primitive_count() as u32;
     let round = primitives.filter_map(|primitive| scene.shape(primitive).axis());
-    for ([from, to], radius) in round.chain(scene.pieces().iter().copied()) {
+    for (axis, radius) in round.chain(scene.pieces().iter().copied()) {
+        let [from, to] = thin_part(view, axis, radius);
         let (Some((a, pixel_a)), Some((b, pixel_b))) = (view.place(from), view.place(to)) else {
             continue; // at or behind the camera
         };
         let width = 2.0 * radius / pixel_a.max(pixel_b);
-        if width < WIDEST && width > 0.0 {
+        if width <= WIDEST && width > 0.0 {
             let reach = radius / pixel_a.min(pixel_b);
-            let samples = (ACROSS / width).ceil().min(f64::from(u32::MAX)) as u32;
+            // What is short too, such as a sphere, is found by samples as dense both ways.
+            let length = ((b - a).length() + width).min(1.0);
+            let samples = ACROSS / width * (ACROSS / length).max(1.0);
+            let samples = samples.ceil().min(f64::from(u32::MAX)) as u32;
             let least = least.get_or_insert_with(|| Plane::new(*area, 0));
             mark(least, a, b, reach, samples);
         }
     }
     least
+}
+
+/// The part of an axis where what is within `radius` of it is thin: from where it is in front of the camera, and far enough. All of
+/// it, if none or both of its ends are.
+fn thin_part(view: &View, [from, to]: [DVec3; 2], radius: f64) -> [DVec3; 2] {
+    let nearest = 2.0 * radius / (WIDEST * view.pixel());
+    let [first, last] = [from, to].map(|point| view.depth(point));
+    let at_nearest = || from + (to - from) * ((nearest - first) / (last - first));
+    match [first, last].map(|depth| depth > nearest) {
+        [false, true] => [at_nearest(), to],
+        [true, false] => [from, at_nearest()],
+        _ => [from, to],
+    }
 }
 
 /// Marks all pixels that come within `reach` of the way from `a` to `b`.

@@ -38,6 +38,9 @@ pub const BATCH: usize = LANES;
 /// Fewer hits of a primitive than this are as fast one by one.
 const FEWEST: u32 = 3;
 
+/// The least weight in a sample of a hit whose cell counts.
+const WEIGHT_OF_CELLS: f32 = 0.25;
+
 /// What one place on the film shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
@@ -46,7 +49,7 @@ pub struct Sample {
     /// A hash of all that the ray tree met: surfaces and their sides, cells of patterns, which lights were seen through what.
     /// Two samples with the same signature differ by what varies smoothly.
     pub signature: u32,
-    /// A number of the cell of the pattern that the camera ray itself met; 0 for none.
+    /// A number of the cells of patterns that it shows, itself or by what it reflects and transmits; 0 for none.
     pub cell: u32,
     /// How many rays it took, those towards lights included.
     pub rays: u32,
@@ -323,8 +326,8 @@ impl<'a> Tracer<'a> {
             let (light, signature, cell) = self.lit.show(k, material);
             let gathered = &mut self.gathered[task.sample as usize];
             gathered.add(task.weight * light, signature);
-            if task.level == 1 {
-                gathered.cell = cell;
+            if cell != 0 && task.weight.max_element() >= WEIGHT_OF_CELLS {
+                gathered.cell = gathered.cell.wrapping_add(task.path.cell(cell).signature());
             }
         }
     }

@@ -4,6 +4,7 @@ mod functions;
 mod goals;
 mod scenes;
 mod specks;
+mod thin;
 
 use glam::DVec2;
 use whitted::{
