@@ -9,8 +9,8 @@
 //! ```
 //!
 //! writes `docs/precision.csv` and `docs/precision.svg` and prints the tables of `docs/accuracy.md`; `-- --quick` skips the
-//! frames. The times are of code compiled for AVX2 and FMA where the machine has them, through the same dispatch as the
-//! program's; those of the baseline, where every fused multiply-add is a call, stand beside them.
+//! frames. The times are of code compiled for the best instructions that the machine has, through the same dispatch as
+//! the program's; those of the baseline, where every fused multiply-add is a call, stand beside them.
 #![allow(missing_docs, reason = "a bench")]
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "what it is for")]
 
