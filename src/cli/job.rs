@@ -73,8 +73,10 @@ pub(crate) fn run(
         stop,
         interval: Duration::from_secs_f64(args.checkpoint),
         stopping: match options.goal {
-            Goal::Mode => "stopping: blocks in work are finished; once more stops at once",
-            _ => "stopping: the picture is kept as it is; once more stops at once",
+            Goal::Mode => {
+                "stopping: finishing the blocks in progress; interrupt again to stop at once"
+            }
+            _ => "stopping: keeping the picture as it is; interrupt again to stop at once",
         },
         note: &|line| note(args, line),
     };
@@ -109,7 +111,7 @@ fn find(job: &Job, args: &RenderArgs) -> Result<(), Failure> {
             note(
                 args,
                 &format!(
-                    "warning: {name} is left from an interrupted render; --resume goes on from it (without, its name gets .old at \
+                    "warning: {name} is left from an interrupted render; --resume goes on from it (otherwise it is renamed to .old at \
                      the first new checkpoint)"
                 ),
             );
@@ -126,7 +128,7 @@ fn find(job: &Job, args: &RenderArgs) -> Result<(), Failure> {
 /// How far the picture is.
 fn so_far(job: &Job) -> String {
     match job.estimated_rmse() {
-        Some(error) => format!("off by about {error:.2} of 255 levels"),
+        Some(error) => format!("at an estimated error of {error:.2} of 255 levels"),
         None => format!("with {:.0} % done", 100.0 * job.share_done()),
     }
 }
@@ -179,7 +181,7 @@ fn leave(order: &Order, job: &Job) -> Failure {
     }
     match job.with_film(|film| order.picture.write(film, &label)) {
         Ok(()) => lines.push(format!("picture so far: {}", order.picture.name())),
-        Err(failure) => lines.push(format!("the picture so far is not written: {failure}")),
+        Err(failure) => lines.push(format!("the picture so far could not be written: {failure}")),
     }
     if job.has_checkpoint() {
         lines.push(format!("go on with: {}", resuming_command()));
@@ -202,7 +204,7 @@ fn finish(order: &Order, job: &Job) -> Result<(), Failure> {
     if saved.is_ok() || job.has_checkpoint() {
         let how = if saved.is_ok() { "all" } else { "a part" };
         streams::note(&format!(
-            "{how} of the picture is kept in {path}; when there is room for it, go on with: {}",
+            "{how} of the picture is kept in {path}; once there is room for it, go on with: {}",
             resuming_command()
         ));
     }

@@ -16,7 +16,7 @@ pub(crate) fn run(args: &ManArgs) -> Result<(), Failure> {
     program.build();
     if let Some(folder) = &args.folder {
         fs::create_dir_all(folder)
-            .with_context(|| format!("{}: the folder cannot be made", folder.display()))?;
+            .with_context(|| format!("{}: the folder cannot be created", folder.display()))?;
         for command in std::iter::once(&program).chain(program.get_subcommands()) {
             let page = page(command)?;
             let file = WholeFile::prepare(folder.join(format!("{}.1", name(command))))?;

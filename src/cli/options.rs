@@ -48,7 +48,7 @@ pub(crate) fn check_parts(args: &RenderArgs) -> Result<(), Failure> {
     let has_goal = args.max_error.is_some() || args.time_limit.is_some();
     if args.tile.is_some() && has_goal {
         return Err(Failure::usage(anyhow!(
-            "--tile needs pixels that depend on the scene and options alone, but {goal} shares the rays out over the whole \
+            "--tile needs pixels that depend on the scene and options alone, but {goal} distributes the rays over the whole \
              picture; use --aa adaptive:ERROR instead"
         )));
     }
@@ -63,7 +63,7 @@ pub(crate) fn check_parts(args: &RenderArgs) -> Result<(), Failure> {
     }
     if several && args.reference.is_some() {
         return Err(Failure::usage(anyhow!(
-            "--reference compares with one picture; give one tile"
+            "--reference compares one picture; give only one tile"
         )));
     }
     Ok(())
@@ -89,7 +89,7 @@ pub(crate) fn options(
         && (crop.x1 > width || crop.y1 > height)
     {
         return Err(Failure::usage(anyhow!(
-            "--crop {},{},{},{} is not inside of the picture, {width}x{height} pixels",
+            "--crop {},{},{},{} is not inside the picture, which has {width}x{height} pixels",
             crop.x0,
             crop.y0,
             crop.x1,

@@ -199,7 +199,7 @@ fn summary(
     let error = estimated.into_iter().chain(measured).collect::<String>();
     let unsettled = match rendering.outcome.unsettled {
         0 => String::new(),
-        pixels => format!(" ({pixels} pixels above their limit with all rays)"),
+        pixels => format!(" ({pixels} pixels still above the limit with all their rays)"),
     };
     let Rendering { film, rays, threads, depth, seconds, .. } = rendering;
     let all = rays.camera + rays.reflected + rays.refracted + rays.transmitted + rays.shadow;

@@ -31,7 +31,7 @@ pub enum ImageError {
         source: io::Error,
     },
     /// The file is not a picture of the expected format, or a damaged one.
-    #[error("{}: not a sound PNG file ({source})", path.display())]
+    #[error("{}: not a valid PNG file ({source})", path.display())]
     Decode {
         /// The file as given.
         path: PathBuf,
@@ -40,7 +40,7 @@ pub enum ImageError {
     },
     /// Two pictures of different size have no difference.
     #[error(
-        "the pictures are {}x{} and {}x{} pixels; only pictures of the same size compare",
+        "the pictures are {}x{} and {}x{} pixels; only pictures of the same size can be compared",
         a[0], a[1], b[0], b[1]
     )]
     SizesDiffer {
@@ -56,7 +56,7 @@ pub enum ImageError {
 
 fn extension_fault(extension: &str) -> String {
     if extension.is_empty() {
-        "has no extension to tell the picture format".to_owned()
+        "has no extension that tells the picture format".to_owned()
     } else {
         format!("unknown picture format `.{extension}`")
     }

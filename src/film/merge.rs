@@ -32,7 +32,7 @@ pub enum MergeError {
     },
     /// A part does not say what it is.
     #[error(
-        "{}: the file does not say of which picture it is a part; only .png and .exr files that `whitted` wrote can be joined",
+        "{}: the file does not say which picture it is a part of; only .png and .exr files that `whitted` wrote can be joined",
         path.display()
     )]
     NoLabel {

@@ -109,7 +109,7 @@ pub enum SceneError {
     },
     /// An object with a picture on it has no surface coordinates.
     #[error(
-        "object {object} wears material `{material}`, a picture, but only a sphere or quad has surface coordinates"
+        "object {object} uses material `{material}`, which has a picture, but only a sphere or quad has surface coordinates"
     )]
     NoSurfaceCoordinates {
         /// The object, counted from 1.

@@ -266,7 +266,7 @@ fn a_picture_towards_an_error_or_a_time_is_left_as_it_is() {
             refused(
                 &output,
                 130,
-                &["off by about", "so far: a.png", "a.png.checkpoint", "--resume"],
+                &["at an estimated error of", "so far: a.png", "a.png.checkpoint", "--resume"],
             );
         };
         // Longer if the machine has other work.
@@ -296,7 +296,7 @@ fn a_picture_towards_an_error_or_a_time_is_left_as_it_is() {
                 .expect("it runs");
             std::thread::sleep(Duration::from_secs(1));
             signal(&child, "-INT");
-            refused(&end(child), 130, &["going on from a.png.checkpoint off by about"]);
+            refused(&end(child), 130, &["going on from a.png.checkpoint at an estimated error of"]);
             assert!(error("a.png") < before, "{} after {before}", error("a.png"));
         }
         fs::remove_file(at.join("a.png")).expect("deleted");

@@ -33,7 +33,7 @@ To start with:
 
 {all-args}
 
-Every command tells its flags with --help, and `whitted man COMMAND | man -l -` shows them as a page.";
+Every command lists its flags with --help, and `whitted man COMMAND | man -l -` shows them as a page.";
 
 /// A Whitted-style recursive ray tracer
 #[derive(Debug, Parser)]
@@ -50,7 +50,7 @@ pub(crate) enum Command {
     Render(Box<RenderArgs>),
     /// Measure what accuracy costs: tables and plots of error against time
     Study(StudyArgs),
-    /// Measure how far two pictures are apart
+    /// Measure how much two pictures differ
     Compare(CompareArgs),
     /// Show what a scene or model holds, what was repaired, what is missing
     Inspect(InspectArgs),
@@ -73,7 +73,7 @@ Examples:
   whitted completions zsh > ~/.zfunc/_whitted       (a folder in fpath)
   whitted completions fish > ~/.config/fish/completions/whitted.fish")]
 pub(crate) struct CompletionsArgs {
-    /// Shell that the script is for
+    /// Shell to write the script for
     #[arg(value_name = "SHELL", value_enum)]
     pub(crate) shell: Shell,
 }
@@ -85,11 +85,11 @@ Examples:
   whitted man render | man -l -
   whitted man --folder ~/.local/share/man/man1")]
 pub(crate) struct ManArgs {
-    /// Command that the page is about [default: all of them, briefly]
+    /// Command to describe [default: all of them, briefly]
     #[arg(value_name = "COMMAND", conflicts_with = "folder")]
     pub(crate) about: Option<String>,
 
-    /// Folder to write the pages of all commands to, whitted.1, whitted-render.1 and so on; it is made if it is missing
+    /// Folder to write the pages of all commands to (whitted.1, whitted-render.1 and so on); created if it is missing
     #[arg(long, value_name = "FOLDER")]
     pub(crate) folder: Option<PathBuf>,
 }
@@ -99,15 +99,15 @@ pub(crate) struct ManArgs {
 Examples:
   whitted merge big-*of64.png -o big.png")]
 pub(crate) struct MergeArgs {
-    /// Parts that together are the whole picture: .png or .exr, written by `render --tile` or `--crop`
+    /// Parts that together make the whole picture: .png or .exr files written by `render --tile` or `--crop`
     #[arg(value_name = "PART", required = true)]
     pub(crate) parts: Vec<PathBuf>,
 
-    /// Picture to write: .png, .exr (of .exr parts) or .ppm; the same bytes as an undivided render's
+    /// Picture to write: .png, .exr (from .exr parts) or .ppm; the same bytes as those of an undivided render
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: PathBuf,
 
-    /// Nothing on standard error but errors
+    /// Print only errors
     #[arg(short, long)]
     pub(crate) quiet: bool,
 }
@@ -118,7 +118,7 @@ Examples:
   whitted scenes --show assignment > scene.toml     a scene to start from
   whitted scenes --schema > scene.schema.json")]
 pub(crate) struct ScenesArgs {
-    /// Print this scene as TOML, to be changed and rendered
+    /// Print this scene as TOML, to edit and render
     #[arg(long, value_name = "NAME", conflicts_with = "schema")]
     pub(crate) show: Option<String>,
 
@@ -133,15 +133,15 @@ Examples:
   whitted inspect model.obj
   whitted inspect scene.toml --json")]
 pub(crate) struct InspectArgs {
-    /// File to look at: .obj, .nff or .toml, or a built-in scene
+    /// File to inspect (.obj, .nff or .toml), or a built-in scene
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
 
-    /// One JSON object on standard output instead of text
+    /// Print one JSON object instead of text
     #[arg(long)]
     pub(crate) json: bool,
 
-    /// What would be a warning is an error
+    /// Treat warnings as errors
     #[arg(long)]
     pub(crate) strict: bool,
 }
@@ -150,15 +150,15 @@ pub(crate) struct InspectArgs {
 #[command(after_help = "\
 Examples:
   whitted compare a.png b.png --heatmap difference.png
-  whitted compare a.png b.png --fail-above 0.5     exit code 6 if they are further apart")]
+  whitted compare a.png b.png --fail-above 0.5     exit code 6 if they differ by more")]
 pub(crate) struct CompareArgs {
-    /// A picture: PNG
+    /// First picture (PNG)
     pub(crate) a: PathBuf,
 
-    /// Another of the same size
+    /// Second picture (PNG), of the same size
     pub(crate) b: PathBuf,
 
-    /// PNG to write that shows where they differ: black up to half a level, pale from 128 levels on
+    /// PNG to write that shows where they differ: black up to half a level, pale from 128 levels up
     #[arg(long, value_name = "FILE")]
     pub(crate) heatmap: Option<PathBuf>,
 
@@ -166,7 +166,7 @@ pub(crate) struct CompareArgs {
     #[arg(long, value_name = "RMSE", value_parser = parse_error, allow_negative_numbers = true)]
     pub(crate) fail_above: Option<f64>,
 
-    /// The numbers as JSON
+    /// Print the numbers as JSON
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -184,7 +184,7 @@ pub(crate) struct StudyArgs {
     #[arg(short, long, value_name = "FOLDER", default_value = "study")]
     pub(crate) output: PathBuf,
 
-    /// Small pictures and few repeats: a first impression in less than half a minute
+    /// Use small pictures and few repeats: a first impression in less than half a minute
     #[arg(long)]
     pub(crate) quick: bool,
 
@@ -192,7 +192,7 @@ pub(crate) struct StudyArgs {
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub(crate) size: Option<[u32; 2]>,
 
-    /// Times that each render is timed, of which the median counts [default: 5, or 1 with --quick]
+    /// Timed repeats of each render; the median counts [default: 5, or 1 with --quick]
     #[arg(long, value_name = "N", value_parser = parse_repeats, allow_negative_numbers = true)]
     pub(crate) repeats: Option<u32>,
 
@@ -200,7 +200,7 @@ pub(crate) struct StudyArgs {
     #[arg(long, value_name = "N", value_parser = parse_threads, allow_negative_numbers = true)]
     pub(crate) threads: Option<NonZeroUsize>,
 
-    /// Nothing on standard error but errors
+    /// Print only errors
     #[arg(short, long)]
     pub(crate) quiet: bool,
 }

@@ -30,12 +30,12 @@ pub(crate) struct RenderArgs {
     #[command(flatten)]
     pub(crate) seen: SceneArgs,
 
-    /// Picture to write: .png (8-bit sRGB), .exr (linear 32-bit floats, and the rays of each pixel as a second layer), .ppm (8-bit
-    /// sRGB), or - for a PNG on standard output [default: the scene's name with .png, in the current folder]
+    /// Picture to write: .png (8-bit sRGB), .exr (linear 32-bit floats, with the number of rays per pixel as a second layer),
+    /// .ppm (8-bit sRGB), or - for a PNG on standard output [default: the scene's name with .png, in the current folder]
     #[arg(short, long, value_name = "FILE", help_heading = "Picture")]
     pub(crate) output: Option<PathBuf>,
 
-    /// Width and height in pixels, such as 640x480; at most what 16 GiB of memory hold, for each tile if there are some
+    /// Width and height in pixels, such as 640x480; at most what fits into 16 GiB of memory (per tile, with --tile)
     /// [default: the scene's own]
     #[arg(long, value_name = "WxH", value_parser = parse_sides, help_heading = "Picture")]
     pub(crate) size: Option<[u32; 2]>,
@@ -46,37 +46,37 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "MODE", help_heading = "Quality")]
     pub(crate) aa: Option<AntiAliasing>,
 
-    /// Estimated root-mean-square error of the picture, in levels of 255, to get below; rays go where they reduce it most.
-    /// With --crop that of the part, so the part then equals the whole picture only if both end at the same squared error
-    /// per ray, which is reported; adaptive:ERROR has no such catch
+    /// Estimated root-mean-square error of the picture to get below, in levels of 255; rays go where they reduce it most.
+    /// With --crop it is the error of the part, which then equals that part of the whole picture only if both end at the
+    /// same squared error per ray (it is reported); --aa adaptive:ERROR has no such catch
     #[arg(long, value_name = "E", value_parser = parse_error, allow_negative_numbers = true, help_heading = "Quality")]
     pub(crate) max_error: Option<f64>,
 
-    /// Seconds from the start of the program to the written picture; the best picture that they allow, whose error is
-    /// reported. It is not the same every time. With --resume, so many seconds more
+    /// Seconds from the start of the program to the written picture: the best picture that fits into them is made, and
+    /// its estimated error reported. It is not the same every time. With --resume, that many more seconds
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, conflicts_with = "max_error",
         allow_negative_numbers = true, help_heading = "Quality")]
     pub(crate) time_limit: Option<f64>,
 
-    /// Part of the picture to render, in pixels from the upper left, half open, such as 100,50,200,80; the same pixels as in
-    /// the whole picture
+    /// Part of the picture to render, in pixels from the upper left, such as 100,50,200,80 (X1 and Y1 are the first outside);
+    /// its pixels equal those of the whole picture
     #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = parse_crop, allow_hyphen_values = true, help_heading = "Picture")]
     pub(crate) crop: Option<Tile>,
 
-    /// Share of the picture to render, the I-th of N equal ones counted from 1, for many machines; several, such as 3/64,7/64,
-    /// one after another with the scene read once. Each goes to a file of its own, named like scene-3of64.png unless
-    /// --output names it; with several tiles, -3of64 is put into the name that --output gives. `whitted merge` joins them
+    /// Share of the picture to render, the I-th of N equal ones counted from 1, for many machines. Several, such as 3/64,7/64,
+    /// are rendered one after another, with the scene read once. Each goes to a file of its own, called scene-3of64.png and
+    /// so on unless --output names it; with several tiles, -3of64 is inserted into that name. `whitted merge` joins them
     #[arg(long, value_name = "I/N[,I/N...]", value_parser = parse_shares, conflicts_with = "crop", help_heading = "Picture")]
     pub(crate) tile: Option<Shares>,
 
-    /// Go on from the checkpoint that an interrupted render of the same picture left beside the output; from the beginning if
-    /// there is none. What is finished already is not rendered again
+    /// Go on from the checkpoint that an interrupted render of the same picture left beside the output, or from the beginning
+    /// if there is none. What is already finished is not rendered again
     #[arg(long, help_heading = "Long renders")]
     pub(crate) resume: bool,
 
-    /// Seconds between checkpoints, beside the output with .checkpoint behind its name; it is deleted when the picture is
-    /// finished. Pictures on standard output have none. With --max-error or --time-limit it is all of the picture each time, and
-    /// 50 times as long as that takes is between two at least
+    /// Seconds between checkpoints. The file has the output's name with .checkpoint appended and is deleted when the picture
+    /// is finished; there is none for a picture on standard output. With --max-error or --time-limit the whole of it is
+    /// written each time, and at least 50 times as long as that takes passes between two
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, default_value = "30",
         allow_negative_numbers = true, help_heading = "Long renders")]
     pub(crate) checkpoint: f64,
@@ -93,16 +93,16 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "N", value_parser = parse_threads, allow_negative_numbers = true, help_heading = "Long renders")]
     pub(crate) threads: Option<NonZeroUsize>,
 
-    /// Shading rules: whitted, or classic (those that ray counts of the Standard Procedural Databases
-    /// are compared by: 513x513 rays through the corners of 512x512 pixels)
+    /// Shading rules: whitted, or classic (those by which ray counts of the Standard Procedural Databases
+    /// are compared: 513x513 rays through the corners of 512x512 pixels)
     #[arg(long, value_name = "RULES", value_enum, default_value_t, help_heading = "Quality")]
     pub(crate) rules: Rules,
 
-    /// What would be a warning is an error
+    /// Treat warnings as errors
     #[arg(long, help_heading = "Messages")]
     pub(crate) strict: bool,
 
-    /// Statistics to write as JSON; - is standard output
+    /// File for statistics as JSON; - is standard output
     #[arg(long, value_name = "FILE", help_heading = "Messages")]
     pub(crate) stats: Option<PathBuf>,
 
@@ -110,12 +110,12 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "MODE", value_enum, default_value_t, help_heading = "Messages")]
     pub(crate) progress: ProgressMode,
 
-    /// The picture while it is rendered, block by block: in a window if the program was built with them and there is a display,
-    /// else in the terminal, two pixels a letter, in 24-bit colours
+    /// Show the picture while it is rendered, block by block: in a window if the program was built with the feature view and
+    /// there is a display, else in the terminal, two pixels per character, in 24-bit colours
     #[arg(long, conflicts_with = "quiet", help_heading = "Messages")]
     pub(crate) preview: bool,
 
-    /// Nothing on standard error but errors
+    /// Print only errors
     #[arg(short, long, help_heading = "Messages")]
     pub(crate) quiet: bool,
 }
@@ -142,7 +142,7 @@ pub(crate) enum ProgressMode {
     Bar,
     /// A line every 5 seconds
     Plain,
-    /// JSON objects, one a line, up to ten a second
+    /// JSON objects, one per line, up to ten a second
     Json,
     /// Lines for Open Job Description, at most one a second
     Openjd,

@@ -8,8 +8,8 @@ use super::super::parse::{parse_angle, parse_direction, parse_model, parse_objec
 
 #[derive(Debug, Args)]
 pub(crate) struct SceneArgs {
-    /// Built-in scene, of which `whitted scenes` shows a list, or a file: .toml, .nff, or .obj
-    /// (a model, on a floor under two lights)
+    /// Built-in scene (`whitted scenes` lists them), or a file: .toml, .nff, or .obj (a model, shown
+    /// on a floor under two lights)
     #[arg(default_value = "assignment")]
     pub(crate) scene: String,
 
@@ -17,12 +17,12 @@ pub(crate) struct SceneArgs {
     #[arg(long, value_name = "N", value_parser = parse_objects, allow_negative_numbers = true, help_heading = "Scene")]
     pub(crate) objects: Option<u32>,
 
-    /// Model to add, standing at X,Y,Z on its lowest point, its largest side being SIZE; repeatable
-    /// [default: on the floor in front of the scene's middle, a fitting size]
+    /// Model to add, standing with its lowest point at X,Y,Z and scaled so that its largest side is SIZE;
+    /// repeatable [default: on the floor in front of the scene's middle, in a fitting size]
     #[arg(long = "obj", value_name = "FILE[@X,Y,Z][*SIZE]", value_parser = parse_model, help_heading = "Scene")]
     pub(crate) models: Vec<ModelPlace>,
 
-    /// Where the camera is, in scene units [default: the scene's own]
+    /// Position of the camera, in scene units [default: the scene's own]
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true, help_heading = "Camera")]
     pub(crate) eye: Option<DVec3>,
 
@@ -30,8 +30,8 @@ pub(crate) struct SceneArgs {
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true, help_heading = "Camera")]
     pub(crate) look_at: Option<DVec3>,
 
-    /// Direction that is up, or x, y, z for an axis; a model alone also stands by it [default: the
-    /// scene's own; y for models]
+    /// Direction that is up in the picture, or x, y, z for an axis; a model rendered alone stands upright
+    /// along it [default: the scene's own; y for models]
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_direction, allow_hyphen_values = true, help_heading = "Camera")]
     pub(crate) up: Option<DVec3>,
 

@@ -9,24 +9,23 @@ use super::super::parse::{parse_depth, parse_size, parse_threads};
 use super::SceneArgs;
 
 /// What mouse and keys do.
-pub(crate) const CONTROLS: &str = "\
-  left button, arrows     turn about what is in the middle
+pub(crate) const CONTROLS: &str = "  left button, arrows     orbit around what is in the middle
   right button            move sideways
-  wheel, + and -          nearer, farther
-  a                       next anti-aliasing: none, grid:2, adaptive, and the one of --aa
-  d, shift d              one level of recursion less, more
+  wheel, + and -          move nearer, farther
+  a                       next anti-aliasing mode: none, grid:2, adaptive, and that of --aa
+  d, shift d              one level of recursion fewer, more
   s                       save what is shown as a PNG, and print the camera
-  r                       back to where it began
+  r                       back to the first view
   h                       less text, more text
-  q, Escape               end";
+  q, Escape               quit";
 
 #[derive(Debug, Args)]
 #[command(after_help = format!("\
 Mouse and keys:
 {CONTROLS}
 
-Saved pictures are called scene-view-1.png, -2 and so on, in the current folder. Once all passes are done they are, byte for byte,
-what `whitted render` writes with the camera that is printed.
+Saved pictures are called scene-view-1.png, -2 and so on, in the current folder. Once all passes are done, they are byte for byte
+what `whitted render` writes with the printed camera.
 
 Examples:
   whitted view
@@ -52,11 +51,11 @@ pub(crate) struct ViewArgs {
     #[arg(long, value_name = "N", value_parser = parse_threads, allow_negative_numbers = true)]
     pub(crate) threads: Option<NonZeroUsize>,
 
-    /// What would be a warning is an error
+    /// Treat warnings as errors
     #[arg(long)]
     pub(crate) strict: bool,
 
-    /// Nothing on standard error but errors
+    /// Print only errors
     #[arg(short, long)]
     pub(crate) quiet: bool,
 }

@@ -32,7 +32,7 @@ impl Preview {
         }
         let place = if cfg!(feature = "view") { "no display, and " } else { "" };
         streams::note(&format!(
-            "warning: --preview: there is {place}no terminal at standard error that shows pictures; rendering without"
+            "warning: --preview: there is {place}no terminal on standard error that shows pictures; rendering without it"
         ));
         Self::None
     }

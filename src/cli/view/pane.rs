@@ -22,7 +22,7 @@ pub(super) struct Pane {
 }
 
 fn failed(error: &softbuffer::SoftBufferError) -> anyhow::Error {
-    anyhow!("the window cannot be drawn in: {error}")
+    anyhow!("the window cannot be drawn: {error}")
 }
 
 impl Pane {

@@ -50,7 +50,7 @@ impl PreviewWindow {
         let done = self.events.run_app_on_demand(&mut shown);
         let failure = shown.failure.map(|failure| failure.to_string());
         if let Some(reason) = failure.or(done.err().map(|error| error.to_string())) {
-            streams::note(&format!("warning: --preview: {reason}; rendering without"));
+            streams::note(&format!("warning: --preview: {reason}; rendering without it"));
             self.is_closed = true;
         }
         self.is_closed |= shown.is_closed;

@@ -173,7 +173,7 @@ impl Viewer {
         let status = || self.status(shown);
         match self.text {
             Text::None => Vec::new(),
-            Text::Status => vec![status(), "h: help, s: save, q: end".to_owned()],
+            Text::Status => vec![status(), "h: help, s: save, q: quit".to_owned()],
             Text::Help => {
                 let help = CONTROLS.lines().map(|line| line.trim().to_owned());
                 help.chain([status()]).collect()

@@ -181,7 +181,7 @@ impl Walk<'_, '_> {
                     sides.len() == 2 && sides.all(|side| side.is_some_and(|n| n >= 1))
                 });
                 if !is_size {
-                    wrong("two whole numbers from 1 on, such as [640, 480]");
+                    wrong("two positive whole numbers, such as [640, 480]");
                 }
             }
             Kind::Vectors { least, most } => self.vectors(value, least, most, name, found),

@@ -81,7 +81,7 @@ pub(super) const SCENE: &[Key] = &[
         "what all colours of the file are: sRGB display values (default) or linear",
     ),
     must("camera", Kind::Table(CAMERA), "the pinhole camera"),
-    may("light", Kind::List(&Kind::Table(LIGHT)), "white point lights, as bright near as far"),
+    may("light", Kind::List(&Kind::Table(LIGHT)), "white point lights without fall-off"),
     may("texture", Kind::Named(&Kind::OneOf(TEXTURE)), "textures by name"),
     may("material", Kind::Named(&Kind::Table(MATERIAL)), "materials by name"),
     may("object", Kind::List(&Kind::Table(OBJECT)), "shapes and what they are made of"),
@@ -135,8 +135,8 @@ const PLAID: &[Key] = &[
 pub(super) const MATERIAL: &[Key] = &[
     may("color", Kind::Color, "the colour, if there is no texture; default white"),
     may("texture", Kind::Name("texture"), "the name of a texture"),
-    may("ambient", WEIGHT, "weight of the light that is everywhere; default 0"),
-    may("diffuse", WEIGHT, "weight of scattered light; default 0"),
+    may("ambient", WEIGHT, "weight of ambient light; default 0"),
+    may("diffuse", WEIGHT, "weight of diffuse light; default 0"),
     may("specular", WEIGHT, "weight of the highlight; default 0"),
     may("shininess", WEIGHT, "Phong's exponent; default 1"),
     may("reflection", WEIGHT, "weight of the mirror image; default 0"),
@@ -151,7 +151,7 @@ pub(super) const MATERIAL: &[Key] = &[
         Kind::Color,
         "the colour that this light is filtered to; default white",
     ),
-    may("ior", POSITIVE, "index of refraction; default 1, straight on"),
+    may("ior", POSITIVE, "index of refraction; default 1, which bends nothing"),
 ];
 
 const OBJECT: &[Key] = &[
@@ -248,8 +248,8 @@ pub(super) const SHAPE: &[Key] = &[
 
 pub(super) const MODEL: &[Key] = &[
     must("file", Kind::File, "an OBJ file beside the scene's"),
-    may("scale", POSITIVE, "what its lengths are multiplied by; default 1"),
+    may("scale", POSITIVE, "scale factor; default 1"),
     may("rotate", Kind::Vector, "turns about x, then y, then z, in degrees; default none"),
-    may("translate", Kind::Vector, "how far it is moved then; default not at all"),
+    may("translate", Kind::Vector, "translation, after scaling and rotation; default none"),
     may("material", Kind::Name("material"), "the name of a material in place of the model's own"),
 ];

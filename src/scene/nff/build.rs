@@ -85,7 +85,7 @@ impl Builder {
 
     fn view(&mut self, r: &mut Reader) -> Result<(), String> {
         if self.view.is_some() {
-            return Err("a second view, but one is all a file may have".to_owned());
+            return Err("a second view, but a file may have only one".to_owned());
         }
         r.expect("from")?;
         let eye = r.vector("from")?;
@@ -262,7 +262,7 @@ impl Builder {
             .collect::<Result<Vec<_>, _>>()
             .map_err(|error| missing(&error.to_string()))?;
         if self.shapes.is_empty() && meshes.is_empty() {
-            return Err(missing("holds nothing to see"));
+            return Err(missing("contains nothing to render"));
         }
         let n = self.lights.len().max(1) as f32;
         let usual = n.sqrt() / (2.0 * n);
@@ -278,7 +278,10 @@ impl Builder {
         let dropped = self.dropped.map(|(count, line)| Warning {
             file: path.to_owned(),
             line,
-            message: format!("{count} shapes without size dropped (the first is here)"),
+            message: match count {
+                1 => "dropped 1 shape without size".to_owned(),
+                _ => format!("dropped {count} shapes without size (the first is here)"),
+            },
         });
         Ok(NffScene {
             counts: self.counts,

@@ -107,15 +107,14 @@ impl<'a> Builder<'a> {
         }
         if let t @ Tally { count: 1.., .. } = cut.torn {
             let message = format!(
-                "filled {} only in part, as the outline crosses itself{}",
+                "filled {} only partly, because the outline crosses itself{}",
                 faces(t),
                 first(t)
             );
             warnings.push(self.warning(t, message));
         }
         if let t @ Tally { count: 1.., .. } = cut.turned {
-            let message =
-                format!("turned {} over, whose normals point to the back{}", faces(t), first(t));
+            let message = format!("flipped {} whose normals point backwards{}", faces(t), first(t));
             warnings.push(self.warning(t, message));
         }
         warnings.sort_by(|a, b| (&a.file, a.line).cmp(&(&b.file, b.line)));
@@ -174,7 +173,7 @@ impl<'a> Builder<'a> {
         let t = self.faces.degenerate;
         warn(t, format!("dropped {} without area{}", faces(t), first(t)));
         let t = self.faces.duplicate;
-        warn(t, format!("dropped {} given before{}", faces(t), first(t)));
+        warn(t, format!("dropped {} repeating an earlier one{}", faces(t), first(t)));
         let t = self.faces.repeated;
         warn(t, format!("repaired {} with a corner given twice{}", faces(t), first(t)));
         let t = tallies.short_faces;

@@ -27,7 +27,7 @@ pub enum ModelError {
         reason: String,
     },
     /// There is nothing to see.
-    #[error("{path}: holds no face{hint}")]
+    #[error("{path}: contains no face{hint}")]
     NoFace {
         /// The file.
         path: String,

@@ -91,7 +91,7 @@ fn statement(m: &mut Mtl, keyword: &[u8], mut tokens: Tokens, line: u32) -> Resu
 }
 
 fn not_understood(token: &[u8]) -> String {
-    format!("has `{}` for a number; ignored", shown(token))
+    format!("has `{}` where a number should be; ignored", shown(token))
 }
 
 fn number(tokens: &mut Tokens) -> Result<f64, String> {
