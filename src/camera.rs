@@ -108,7 +108,8 @@ pub struct View {
 }
 
 impl View {
-    /// Where a point in front of the camera is on the film, in pixels as for [`View::ray`], and the length that a pixel covers there.
+    /// Where a point in front of the camera is on the film, in pixels as for [`View::ray`], and the length that a pixel
+    /// covers there.
     pub fn place(&self, point: DVec3) -> Option<(DVec2, f64)> {
         let (pixel, to, depth) = (self.pixel(), point - self.eye, self.depth(point));
         if !(depth > 0.0) {

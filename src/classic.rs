@@ -1,6 +1,7 @@
 //! Pictures by the classical rules, for comparing ray counts with the figures of other programs.
 //!
-//! 513 × 513 eye rays go through the corners of the pixels of a picture of 512 × 512; a pixel is the mean of its corners.
+//! 513 × 513 eye rays go through the corners of the pixels of a picture of 512 × 512; a pixel is the mean of its
+//! corners.
 
 use std::{num::NonZeroUsize, time::Instant};
 

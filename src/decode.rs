@@ -17,8 +17,8 @@ thread_local! {
 
 /// What `decode` gives, or an error where it panics, of which nothing is printed.
 ///
-/// The decoders have such faults: png 0.18.1 panics at a palette that is no whole number of colours, zune-jpeg 0.5.15 at
-/// components that are sampled more densely than the first.
+/// The decoders have such faults: png 0.18.1 panics at a palette that is no whole number of colours, zune-jpeg 0.5.15
+/// at components that are sampled more densely than the first.
 pub(crate) fn decode<T>(decode: impl FnOnce() -> ImageResult<T>) -> ImageResult<T> {
     static QUIET: Once = Once::new();
     QUIET.call_once(|| {

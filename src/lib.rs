@@ -2,14 +2,15 @@
 //!
 //! # The path of a ray
 //!
-//! [`render::render`] hands [tiles](film::Tile) of the film to its workers. In a tile, [`aa::AntiAliasing`] picks places on the
-//! film and [`camera::View`] makes each a [`geometry::Ray`]. [`accel::Accel`] finds the primitive it meets first: it
-//! skips what the ray passes by boxes in single precision, made a little too large, and asks the
-//! [`geometry::Shape`]s that are left in double precision. The winner's [`geometry::Surface`] (point, normal, error bound) and its
-//! [`material::Material`], coloured by a [`texture::Texture`], say how light leaves it; rays towards every
-//! [`light::Light`] ask what stands between; and reflected and refracted rays, each knowing the surface it leaves, join the work list of
-//! [`trace::Tracer`]. What comes back is averaged over the pixel in linear light, put on the [`film::Film`] and
-//! encoded at the very end. Pictures are rendered block by block, and a [`checkpoint`] keeps the finished ones of a render that is stopped.
+//! [`render::render`] hands [tiles](film::Tile) of the film to its workers. In a tile, [`aa::AntiAliasing`] picks
+//! places on the film and [`camera::View`] makes each a [`geometry::Ray`]. [`accel::Accel`] finds the primitive it
+//! meets first: it skips what the ray passes by boxes in single precision, made a little too large, and asks the
+//! [`geometry::Shape`]s that are left in double precision. The winner's [`geometry::Surface`] (point, normal, error
+//! bound) and its [`material::Material`], coloured by a [`texture::Texture`], say how light leaves it; rays towards
+//! every [`light::Light`] ask what stands between; and reflected and refracted rays, each knowing the surface it
+//! leaves, join the work list of [`trace::Tracer`]. What comes back is averaged over the pixel in linear light, put on
+//! the [`film::Film`] and encoded at the very end. Pictures are rendered block by block, and a [`checkpoint`] keeps the
+//! finished ones of a render that is stopped.
 //!
 //! A [`scene::Scene`] is made from a [`scene::SceneDesc`], which is plain data, read from TOML.
 //!

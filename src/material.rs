@@ -4,10 +4,10 @@ use crate::{color::Rgb, geometry::Similarity, texture::Texture};
 
 /// How a surface answers light.
 ///
-/// Light leaves it as the sum of: `opacity · (ambient C + diffuse C Σ cos θ I)`, with C the texture's colour and the sum over
-/// the lights that reach it; `specular · Σ cosⁿ I`, Phong's highlight, white, with n the `shininess`; `reflection` times
-/// the light from the mirror direction; and `transmission` times the light from behind. The weights are linear numbers that
-/// are not made to sum to 1.
+/// Light leaves it as the sum of: `opacity · (ambient C + diffuse C Σ cos θ I)`, with C the texture's colour and the
+/// sum over the lights that reach it; `specular · Σ cosⁿ I`, Phong's highlight, white, with n the `shininess`;
+/// `reflection` times the light from the mirror direction; and `transmission` times the light from behind. The weights
+/// are linear numbers that are not made to sum to 1.
 ///
 /// A surface with `transmission` bounds a body: seen from within it only transmits.
 ///

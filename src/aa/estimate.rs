@@ -1,7 +1,8 @@
 //! How far a pixel is from its true colour, judged by the samples at hand.
 //!
 //! All errors are mean squared differences of the three channels in display levels of 255. The constants are shares of
-//! what can be seen: of the variance of a pixel's samples, or of the contrast to its neighbours. None depends on the scene.
+//! what can be seen: of the variance of a pixel's samples, or of the contrast to its neighbours. None depends on the
+//! scene.
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -14,8 +15,8 @@ const CENTER_EDGE: f32 = 0.022;
 const CENTER_CURVE: f32 = 0.016;
 /// And where the second difference was used to correct the colour.
 const CORRECTED_CURVE: f32 = 0.008;
-/// How much more it is where colours follow no slope: points of noise are off by their variance, and their squared second
-/// differences in both directions are twelve times that.
+/// How much more it is where colours follow no slope: points of noise are off by their variance, and their squared
+/// second differences in both directions are twelve times that.
 const NOISE: f32 = 4.2;
 
 /// How far, in logarithms, the error of a sequence goes from that of an even pattern to that of random samples in the
@@ -40,8 +41,8 @@ pub struct Look {
     pub curve: f32,
     /// Squared differences of opposite neighbours, horizontal and vertical.
     pub slope: f32,
-    /// How often the signature changes on the way round: 0 where one edge or none passes by, 1 where six or more do. Where
-    /// neighbours at opposite sides both differ, which no single edge makes, it is at least 3/4.
+    /// How often the signature changes on the way round: 0 where one edge or none passes by, 1 where six or more do.
+    /// Where neighbours at opposite sides both differ, which no single edge makes, it is at least 3/4.
     pub busy: f32,
 }
 
@@ -102,8 +103,8 @@ impl Look {
         self.texture_error(if corrected { CORRECTED_CURVE } else { CENTER_CURVE })
     }
 
-    /// The share of the second differences grows as they outweigh the slope: from what is left of a smooth function to all
-    /// of a noise's variance.
+    /// The share of the second differences grows as they outweigh the slope: from what is left of a smooth function to
+    /// all of a noise's variance.
     fn texture_error(&self, share: f32) -> f32 {
         if self.curve <= 0.0 {
             return 0.0;
@@ -175,8 +176,9 @@ impl Spread {
 
     /// The error of the mean of samples whose pattern leaves the share `kappa` of the variance at a single edge.
     ///
-    /// More kinds of surfaces mean more edges, which even patterns deal with less well; so do changes all around, where edges
-    /// of two kinds may be many: `busy` is how far, in logarithms, the error goes to that of random samples. But no mean is worse than that of random samples.
+    /// More kinds of surfaces mean more edges, which even patterns deal with less well; so do changes all around, where
+    /// edges of two kinds may be many: `busy` is how far, in logarithms, the error goes to that of random samples. But
+    /// no mean is worse than that of random samples.
     pub fn error(&self, kappa: f32, busy: f32) -> f32 {
         self.share(kappa, busy) * self.variance()
     }
@@ -198,8 +200,8 @@ fn by_logarithms(table: &[(f32, f32)], x: f32) -> f32 {
     y0 * (y1 / y0).powf((x / x0).ln() / (x1 / x0).ln())
 }
 
-/// The share of the variance that `points` of the [`Sequence`](super::sobol::Sequence) leave, with centre and corners; 0 is
-/// centre and corners alone.
+/// The share of the variance that `points` of the [`Sequence`](super::sobol::Sequence) leave, with centre and corners;
+/// 0 is centre and corners alone.
 pub fn sequence_share(points: u32) -> f32 {
     const SHARES: [(f32, f32); 6] =
         [(1.0, 0.078), (4.0, 0.030), (8.0, 0.017), (16.0, 0.0070), (32.0, 0.0027), (64.0, 0.0011)];
@@ -215,15 +217,15 @@ pub fn sequence_unseen(points: u32) -> f32 {
 
 /// The part of what quarters of a sequence's `points` differ by that the whole is off by at least.
 ///
-/// Each quarter is an even pattern as well. Were the samples random, the variance of the quarters' mean would be the whole
-/// error; at a single edge it is two to four times the error, because the whole is more even than its quarters.
+/// Each quarter is an even pattern as well. Were the samples random, the variance of the quarters' mean would be the
+/// whole error; at a single edge it is two to four times the error, because the whole is more even than its quarters.
 pub fn quarters_share(points: u32) -> f32 {
     by_logarithms(&[(8.0, 0.16), (16.0, 0.23), (32.0, 0.33), (64.0, 0.43)], points.max(8) as f32)
         .min(1.0)
 }
 
-/// The squared error of a mean of `count` samples in a busy place that all met the same, as a share of the neighbours' mean squared
-/// difference: the expected square of the part not seen, if any part was as likely before.
+/// The squared error of a mean of `count` samples in a busy place that all met the same, as a share of the neighbours'
+/// mean squared difference: the expected square of the part not seen, if any part was as likely before.
 pub fn all_alike(count: u32) -> f32 {
     let n = count as f32;
     2.0 / ((n + 2.0) * (n + 3.0))
@@ -239,10 +241,11 @@ pub fn bare_sequence_share(points: u32) -> f32 {
 pub const GRID_OF_FOUR: f32 = 0.068;
 
 /// What interleaved parts of a grid of `side` × `side` samples, their display levels given row by row, differ by: the
-/// squared error that their mean would have if they were independent. The parts are four grids, or three diagonals of 3 × 3 samples.
+/// squared error that their mean would have if they were independent. The parts are four grids, or three diagonals of 3
+/// × 3 samples.
 ///
-/// They are even patterns as well, whatever they show, so what they leave tells what the whole leaves: for random samples all
-/// of this, at a single edge a third.
+/// They are even patterns as well, whatever they show, so what they leave tells what the whole leaves: for random
+/// samples all of this, at a single edge a third.
 pub fn interleaved(levels: &[Vec3], side: usize) -> f32 {
     let (mut sums, mut counts) = ([Vec3::ZERO; 4], [0_u32; 4]);
     for (k, level) in levels.iter().enumerate() {
@@ -289,8 +292,8 @@ mod tests {
         assert!(!pixel([7; 9]).suspect && pixel([7; 9]).inner);
     }
 
-    /// Oracle: by hand. The four interleaved grids of one of 4 × 4 samples are grey 0, 0, 0 and 1: levels 0, 0, 0 and 255, whose mean
-    /// squared deviation from 63.75 is 3/16 of 255²; their mean has a third of that.
+    /// Oracle: by hand. The four interleaved grids of one of 4 × 4 samples are grey 0, 0, 0 and 1: levels 0, 0, 0 and
+    /// 255, whose mean squared deviation from 63.75 is 3/16 of 255²; their mean has a third of that.
     #[test]
     fn interleaved_grids_are_compared() {
         let level = |k: usize| Vec3::splat(if k / 4 % 2 == 1 && k % 2 == 1 { 255.0 } else { 0.0 });

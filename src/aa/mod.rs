@@ -31,13 +31,14 @@ pub enum AntiAliasing {
         /// Cells along a side of the pixel; from 1 to 64 in what is read from text.
         side: u32,
     },
-    /// As many rays in each pixel, at the places of a [sequence](sobol::Sequence) other than that of `Adaptive`: for references.
+    /// As many rays in each pixel, at the places of a [sequence](sobol::Sequence) other than that of `Adaptive`: for
+    /// references.
     Sequence {
         /// Rays through each pixel; best a power of two.
         count: u32,
     },
-    /// Rays where the picture needs them: one through each centre, more where those of neighbours met different things or
-    /// differ in colour, until the pixel's estimated error is below `error` or `most` rays are spent.
+    /// Rays where the picture needs them: one through each centre, more where those of neighbours met different things
+    /// or differ in colour, until the pixel's estimated error is below `error` or `most` rays are spent.
     Adaptive {
         /// The error of a pixel that is good enough: root mean square of its channels, in levels of 255.
         error: f32,

@@ -41,8 +41,8 @@ impl Stage {
     }
 }
 
-/// The stages of a pixel after its centre, for at most `most` rays through a pixel: a corner of its own (others belong to
-/// neighbours), then 4, 8, 16, ... samples.
+/// The stages of a pixel after its centre, for at most `most` rays through a pixel: a corner of its own (others belong
+/// to neighbours), then 4, 8, 16, ... samples.
 pub fn stages(most: u32) -> Vec<Stage> {
     let most = most.saturating_sub(2);
     if most < 2 {
@@ -167,10 +167,11 @@ impl Refined {
         (self.sum + self.cross * weight) / (self.points as f32 + weight)
     }
 
-    /// The colour's squared error: rather too large than too small, for this pixel; and as it is on average, for sums over many.
-    /// `contrast` and `busy` are those of the pixel's [`Look`](super::estimate::Look), zero unless suspect.
+    /// The colour's squared error: rather too large than too small, for this pixel; and as it is on average, for sums
+    /// over many. `contrast` and `busy` are those of the pixel's [`Look`](super::estimate::Look), zero unless suspect.
     ///
-    /// From 8 samples on the second comes from what the quarters of the samples differ by, which knows nothing of what they met.
+    /// From 8 samples on the second comes from what the quarters of the samples differ by, which knows nothing of what
+    /// they met.
     pub fn errors(&self, contrast: f32, busy: f32) -> (f32, f32) {
         let seen = self.spread.error(self.stage.share, BUSY * busy);
         if self.points < 8 {

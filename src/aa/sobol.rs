@@ -7,12 +7,12 @@ use crate::math::random::SplitMix64;
 /// A pixel's own sequence of places in the unit square.
 ///
 /// The first 2ᵏ places hit every elementary interval (2⁻ᵃ wide, 2⁻ᵇ high, a + b = k) exactly once, for every k: each
-/// beginning of a length that is a power of two is as even as that many places can be. Owen's scrambling keeps that and makes
-/// every place uniform, so that means are without bias and pixels independent.
+/// beginning of a length that is a power of two is as even as that many places can be. Owen's scrambling keeps that and
+/// makes every place uniform, so that means are without bias and pixels independent.
 ///
-/// Source: Sobol' (1967); Owen, "Randomly permuted (t,m,s)-nets and (t,s)-sequences" (1995); the hash in place of Owen's
-/// permutations: Laine & Karras, "Stratified sampling for stochastic transparency" (2011), and Burley, "Practical
-/// hash-based Owen scrambling", *JCGT* 9(4) (2020).
+/// Source: Sobol' (1967); Owen, "Randomly permuted (t,m,s)-nets and (t,s)-sequences" (1995); the hash in place of
+/// Owen's permutations: Laine & Karras, "Stratified sampling for stochastic transparency" (2011), and Burley,
+/// "Practical hash-based Owen scrambling", *JCGT* 9(4) (2020).
 #[derive(Clone, Copy, Debug)]
 pub struct Sequence {
     seeds: [u32; 2],

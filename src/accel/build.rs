@@ -50,8 +50,8 @@ fn point_of_unit_cube(random: &mut SplitMix64) -> Vec3A {
     Vec3A::new(part(0), part(21), part(42))
 }
 
-/// How much time the build of a tree may take. Every answer is the same; whether a tree that took longer is faster to trace depends on
-/// the scene: `whitted study` shows that spheres strewn at random gain nothing.
+/// How much time the build of a tree may take. Every answer is the same; whether a tree that took longer is faster to
+/// trace depends on the scene: `whitted study` shows that spheres strewn at random gain nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Preset {
     /// The least time: a tree as it comes, not improved.
@@ -88,8 +88,8 @@ struct Effort {
 }
 
 impl Effort {
-    /// By [`Preset::Auto`] more for a scene of `meshes` or of few primitives, as long as it takes less time than the rays of a
-    /// small picture.
+    /// By [`Preset::Auto`] more for a scene of `meshes` or of few primitives, as long as it takes less time than the
+    /// rays of a small picture.
     fn new(preset: Preset, count: usize, meshes: bool) -> Self {
         use Preset::{Auto, Fast, Thorough};
         let (reach, first_passes, reinsertion): (_, _, &[f32]) = match (preset, count) {
@@ -105,8 +105,8 @@ impl Effort {
     }
 }
 
-/// The binary tree that obvhs builds over `boxes` by `preset`, of a scene of `meshes` or not; the two children of a node are next to
-/// each other, the root is first, and a leaf's index is that of its one box.
+/// The binary tree that obvhs builds over `boxes` by `preset`, of a scene of `meshes` or not; the two children of a
+/// node are next to each other, the root is first, and a leaf's index is that of its one box.
 pub(super) fn binary(boxes: Vec<Aabb>, meshes: bool, preset: Preset) -> Vec<Bvh2Node> {
     let Effort { reach, first_passes, reinsertion } = Effort::new(preset, boxes.len(), meshes);
     let precision = if boxes.len() <= 2_000 { SortPrecision::U128 } else { SortPrecision::U64 };

@@ -42,8 +42,8 @@ pub(super) struct Wide {
     pub(super) nodes: Vec<Node>,
     /// Where to start.
     pub(super) root: Child,
-    /// The primitives in the tree's order, as the binary tree's leaves count them: first all spheres, then all triangles, then
-    /// the others, and the primitives of a leaf side by side.
+    /// The primitives in the tree's order, as the binary tree's leaves count them: first all spheres, then all
+    /// triangles, then the others, and the primitives of a leaf side by side.
     pub(super) order: Vec<u32>,
     /// The leaves of spheres, in that order.
     pub(super) sphere_runs: Vec<Run>,
@@ -149,7 +149,8 @@ impl Collapse<'_> {
         }
     }
 
-    /// Puts the binary nodes that become the children of the wide node made from `node` into `slots`, and returns how many they are.
+    /// Puts the binary nodes that become the children of the wide node made from `node` into `slots`, and returns how
+    /// many they are.
     fn slots_of(&self, node: u32, slots: &mut [u32; WIDTH], todo: &mut Vec<(u32, usize)>) -> usize {
         let mut count = 0;
         todo.push((node, WIDTH));
@@ -269,7 +270,8 @@ fn joined(top: Part, tasks: &[Task], subtrees: Vec<Part>) -> Wide {
     }
 }
 
-/// The nodes of all parts: those of the first, then those of the others but for their first, which takes its task's place.
+/// The nodes of all parts: those of the first, then those of the others but for their first, which takes its task's
+/// place.
 fn joined_nodes(parts: &[Part], shifts: &[Shift], tasks: &[Task]) -> Vec<Node> {
     let count = parts.iter().map(|part| part.nodes.len()).sum::<usize>() + 1 - parts.len();
     let mut nodes = huge::vec_with_capacity(count);

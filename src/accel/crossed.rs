@@ -122,8 +122,8 @@ where
     B: Fn(u32) -> bool,
     V: Visit,
 {
-    /// Whether one of the candidates of a leaf whose primitives start at `first` stops the ray: a certain hit of an opaque one does
-    /// without further ado.
+    /// Whether one of the candidates of a leaf whose primitives start at `first` stops the ray: a certain hit of an
+    /// opaque one does without further ado.
     #[inline(always)]
     fn take<S: Simd>(&mut self, simd: S, first: u32, candidates: &Candidates) -> bool {
         let Candidates { maybe, certain, .. } = *candidates;

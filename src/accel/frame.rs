@@ -16,7 +16,8 @@ use crate::{
 /// rays (tangent, through vertices, along faces); the other three are margin.
 const BOX_PAD: f64 = 1.0 / (1 << 19) as f64;
 
-/// Rays from afar that pass the centre at a greater distance (squared) miss the ball about [−1, 1]³, whose radius is √3.
+/// Rays from afar that pass the centre at a greater distance (squared) miss the ball about [−1, 1]³, whose radius is
+/// √3.
 const BALL_SQUARED: f64 = 3.05;
 
 /// How much later than computed an end may be, in the parameter of the tree's frame, for a ray that walked here.
@@ -125,8 +126,8 @@ impl Frame {
         Entry::Ray(TreeRay::new(origin, dir, rate, arrival, slack))
     }
 
-    /// The direction scaled so that its largest component is in [1, 2], the rate of the parameters, and whether both are
-    /// ordinary numbers: directions that are zero, subnormal or not finite go elsewhere.
+    /// The direction scaled so that its largest component is in [1, 2], the rate of the parameters, and whether both
+    /// are ordinary numbers: directions that are zero, subnormal or not finite go elsewhere.
     #[inline(always)]
     fn shrunk(&self, dir: DVec3) -> (DVec3, f64, bool) {
         let size = dir.abs();
@@ -145,9 +146,9 @@ impl Frame {
 /// A point of the line of a ray from afar between 1.92 and 2 from the centre, before the ball about the frame, and its
 /// parameter; `None` if the line passes by or the ball is behind.
 ///
-/// The foot of the perpendicular from the centre, o + t d, is as exact as the origin, as product and sum are rounded once:
-/// an error of t only moves it along the line. At the distance √f from the centre, it is y = 1.98 − f/3 beyond the point,
-/// which is outside the ball and not too far, as √(3.02 − f) ≤ y ≤ √(4 − f) for f up to [`BALL_SQUARED`].
+/// The foot of the perpendicular from the centre, o + t d, is as exact as the origin, as product and sum are rounded
+/// once: an error of t only moves it along the line. At the distance √f from the centre, it is y = 1.98 − f/3 beyond
+/// the point, which is outside the ball and not too far, as √(3.02 − f) ≤ y ≤ √(4 − f) for f up to [`BALL_SQUARED`].
 #[inline(always)]
 fn arrive(origin: DVec3, dir: DVec3) -> Option<(DVec3, f64)> {
     let a = dir.length_squared();

@@ -1,4 +1,5 @@
-//! Memory in large pages, so that a ray through gigabytes does not wait for the tables of small ones, and memory given back.
+//! Memory in large pages, so that a ray through gigabytes does not wait for the tables of small ones, and memory given
+//! back.
 #![allow(unsafe_code, reason = "the advice to the system is a foreign function")]
 
 /// An empty vector with room for `count` elements, in large pages where the system has some.
@@ -8,7 +9,8 @@ pub(super) fn vec_with_capacity<T>(count: usize) -> Vec<T> {
     vec
 }
 
-/// Asks for large pages for a vector's memory, none of which has been written to; what the allocator has zeroed has not.
+/// Asks for large pages for a vector's memory, none of which has been written to; what the allocator has zeroed has
+/// not.
 pub(super) fn advise<T>(vec: &Vec<T>) {
     #[cfg(target_os = "linux")]
     linux::advise(vec.as_ptr().addr(), vec.capacity() * size_of::<T>());

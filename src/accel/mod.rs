@@ -100,7 +100,8 @@ impl Accel {
         Self::with_preset(shapes, Preset::Auto)
     }
 
-    /// As [`Accel::build`], with queries by the instructions of `isa`, or the portable ones where the machine lacks them.
+    /// As [`Accel::build`], with queries by the instructions of `isa`, or the portable ones where the machine lacks
+    /// them.
     pub fn with_isa(shapes: Vec<Shape>, isa: Isa) -> Self {
         let mut accel = Self::build(shapes);
         accel.set_isa(isa);
@@ -201,7 +202,8 @@ impl Accel {
         self.isa
     }
 
-    /// Runs `work` compiled for the instructions that queries use, so that its fused multiply-adds are instructions too.
+    /// Runs `work` compiled for the instructions that queries use, so that its fused multiply-adds are instructions
+    /// too.
     #[inline(always)]
     pub(crate) fn run<W: Work>(&self, work: W) {
         self.dispatch(Run(work));
@@ -225,8 +227,8 @@ impl Accel {
         }
     }
 
-    /// The lanes for which [`Accel::is_blocked`] is true, of rays that all end at `t = 1` in `target`; `visit(lane, primitive,
-    /// crossing)` is told the lane too.
+    /// The lanes for which [`Accel::is_blocked`] is true, of rays that all end at `t = 1` in `target`;
+    /// `visit(lane, primitive, crossing)` is told the lane too.
     pub fn blocked_packet(
         &self,
         rays: &RayLanes,
@@ -256,8 +258,8 @@ impl Accel {
         self.is_blocked(ray, end, |_| false, visit)
     }
 
-    /// Whether a primitive that is `opaque` is crossed with `0 < t < end`, or `visit(primitive, crossing)` breaks, which is
-    /// called for crossings of the others, in no order, until the answer is known.
+    /// Whether a primitive that is `opaque` is crossed with `0 < t < end`, or `visit(primitive, crossing)` breaks,
+    /// which is called for crossings of the others, in no order, until the answer is known.
     pub fn is_blocked(
         &self,
         ray: &Ray,

@@ -16,7 +16,8 @@ pub(super) struct Node {
     pub(super) children: [Child; WIDTH],
 }
 
-/// What a box holds: a kind in the upper two bits, for a leaf of several how many in the next three, and where in the others.
+/// What a box holds: a kind in the upper two bits, for a leaf of several how many in the next three, and where in the
+/// others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(transparent)]
 pub(super) struct Child(u32);

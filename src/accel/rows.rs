@@ -12,8 +12,8 @@ const LINE: usize = 16;
 /// Leaves filled by one thread.
 const CHUNK: usize = 1024;
 
-/// `N` numbers for each primitive, leaf after leaf: in each the first numbers of its primitives side by side, then the second
-/// ones, and so on.
+/// `N` numbers for each primitive, leaf after leaf: in each the first numbers of its primitives side by side, then the
+/// second ones, and so on.
 #[derive(Debug)]
 pub(super) struct Rows<const N: usize> {
     numbers: Vec<f32>,

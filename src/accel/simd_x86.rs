@@ -1,7 +1,7 @@
 //! The instructions of x86-64.
 //!
-//! The lanes of single precision are the same eight for all; AVX-512 does those of double precision, which the compiler makes of
-//! loops, eight at a time.
+//! The lanes of single precision are the same eight for all; AVX-512 does those of double precision, which the compiler
+//! makes of loops, eight at a time.
 #![allow(unsafe_code, reason = "instructions that not every machine has")]
 
 use std::arch::x86_64::{
@@ -31,7 +31,8 @@ macro_rules! instructions {
     ($(#[$doc:meta])* $name:ident: $features:literal = $($feature:tt)and+) => {
         $(#[$doc])*
         ///
-        /// Only `detect` makes one, so that a value proves the machine has all; this is what every `unsafe` here relies on.
+        /// Only `detect` makes one, so that a value proves the machine has all; this is what every `unsafe` here relies
+        /// on.
         #[derive(Clone, Copy, Debug)]
         pub(super) struct $name(());
 

@@ -42,8 +42,8 @@ impl Left {
         if lane < 8 { 1 << lane } else { 0 }
     }
 
-    /// Sorts out the primitives of a leaf of several, but for the one that the ray leaves, and tells the place of the first; `None` of
-    /// what is no such leaf.
+    /// Sorts out the primitives of a leaf of several, but for the one that the ray leaves, and tells the place of the
+    /// first; `None` of what is no such leaf.
     #[inline(always)]
     pub(super) fn sort_out<S: Simd>(
         self,
@@ -74,7 +74,8 @@ impl Left {
         candidates.maybe &= !self.lane(first);
     }
 
-    /// Strikes it from the candidates of a leaf of spheres, or leaves it to its own test, which alone knows what a ray inward meets.
+    /// Strikes it from the candidates of a leaf of spheres, or leaves it to its own test, which alone knows what a ray
+    /// inward meets.
     #[inline(always)]
     fn settle_round(self, first: u32, candidates: &mut Candidates) {
         let lane = self.lane(first);

@@ -77,7 +77,8 @@ impl Tree {
         }
     }
 
-    /// Asks for the memory of a child that is visited later, if it is a node; for a single ray, to do so for leaves, too, was slower.
+    /// Asks for the memory of a child that is visited later, if it is a node; for a single ray, to do so for leaves,
+    /// too, was slower.
     #[inline(always)]
     pub(super) fn prefetch_node<S: Simd>(&self, simd: S, child: Child) {
         if let Content::Node(k) = child.content() {

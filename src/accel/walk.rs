@@ -34,7 +34,8 @@ struct Slabs<S: Simd> {
     inverse: [S::F; 3],
     /// The origin times that.
     offset: [S::F; 3],
-    /// Whether the ray meets the larger coordinate first; as truth values, so that rows found by them are known to exist.
+    /// Whether the ray meets the larger coordinate first; as truth values, so that rows found by them are known to
+    /// exist.
     backward: [bool; 3],
 }
 

@@ -64,8 +64,8 @@ struct Kept {
 }
 
 impl<'a> Job<'a> {
-    /// A picture of which nothing is finished: the part that `label` names, in blocks at `places`, whose checkpoint is at `path`. No
-    /// block is begun once `stop` is set.
+    /// A picture of which nothing is finished: the part that `label` names, in blocks at `places`, whose checkpoint is
+    /// at `path`. No block is begun once `stop` is set.
     pub fn new(
         label: Label,
         places: Vec<Tile>,
@@ -132,8 +132,8 @@ impl<'a> Job<'a> {
         checkpoint.map_or(Ok(()), Checkpoint::remove)
     }
 
-    /// Writes what is finished but not in the checkpoint yet, which is made if there is none, and made anew if it was deleted. A picture
-    /// towards an error or until a time is written by the threads that render it, soon.
+    /// Writes what is finished but not in the checkpoint yet, which is made if there is none, and made anew if it was
+    /// deleted. A picture towards an error or until a time is written by the threads that render it, soon.
     ///
     /// # Errors
     /// The file cannot be written, or could not the last time; what it had is kept, and nothing is forgotten.
@@ -215,8 +215,8 @@ impl<'a> Job<'a> {
         self.state().outcome
     }
 
-    /// The estimated error of a picture towards an error or until a time that was read or stopped, if each of its pixels has a ray:
-    /// root mean square of all channels, in levels of 255.
+    /// The estimated error of a picture towards an error or until a time that was read or stopped, if each of its
+    /// pixels has a ray: root mean square of all channels, in levels of 255.
     pub fn estimated_rmse(&self) -> Option<f64> {
         self.state().rmse
     }

@@ -1,11 +1,12 @@
 //! Renders that survive: finished blocks on disk, from which an interrupted render goes on.
 //!
 //! A checkpoint is a file that only grows: a head that says of which picture it is, then a record for each finished
-//! [block](crate::render::Block). Each has a checksum, so whatever ends the program in the midst of writing costs at most the
-//! last record. The head is written to another file that is then renamed, so that a checkpoint always has a whole one.
+//! [block](crate::render::Block). Each has a checksum, so whatever ends the program in the midst of writing costs at
+//! most the last record. The head is written to another file that is then renamed, so that a checkpoint always has a
+//! whole one.
 //!
-//! A picture towards an error or until a time has no block that is finished before the others; all that is known of it is written
-//! behind the head instead, to another file that then takes the place of the last one.
+//! A picture towards an error or until a time has no block that is finished before the others; all that is known of it
+//! is written behind the head instead, to another file that then takes the place of the last one.
 
 mod job;
 mod record;
@@ -138,8 +139,8 @@ impl Checkpoint {
         Ok(Self { path: path.to_owned(), file, length })
     }
 
-    /// Opens the checkpoint of the picture that `label` describes, in blocks at `places`, and hands each entry to `put`. What is
-    /// behind the last whole one is cut off.
+    /// Opens the checkpoint of the picture that `label` describes, in blocks at `places`, and hands each entry to
+    /// `put`. What is behind the last whole one is cut off.
     ///
     /// # Errors
     /// The file cannot be read, is damaged, or is of another picture.

@@ -24,8 +24,8 @@ pub enum Entry {
 const UNFINISHED: u32 = u32::MAX;
 
 impl Entry {
-    /// The next entry of the checkpoint of a picture in blocks at `places`, and the bytes that it takes; none where the file ends,
-    /// or from where on it is damaged.
+    /// The next entry of the checkpoint of a picture in blocks at `places`, and the bytes that it takes; none where the
+    /// file ends, or from where on it is damaged.
     pub(super) fn read(reader: &mut impl Read, places: &[Tile]) -> io::Result<Option<(Self, u64)>> {
         let mut number = [0; 4];
         if !read_all(reader, &mut number)? {

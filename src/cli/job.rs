@@ -133,7 +133,8 @@ fn so_far(job: &Job) -> String {
     }
 }
 
-/// Renders what the job has not, while others look after it. A window has to be on the thread that the program began with.
+/// Renders what the job has not, while others look after it. A window has to be on the thread that the program began
+/// with.
 fn render(
     order: &Order,
     job: &Job,

@@ -105,7 +105,8 @@ impl Reporter {
         }
     }
 
-    /// The report due at the moment `now`, if any; `tells_end` is whether the last one comes although the pause is not over.
+    /// The report due at the moment `now`, if any; `tells_end` is whether the last one comes although the pause is not
+    /// over.
     fn due(
         &self,
         progress: &Progress,

@@ -30,8 +30,8 @@ pub(crate) fn note(plain: &str) {
     let _ = writeln!(io::stderr().lock(), "{line}");
 }
 
-/// Whether words on standard error are coloured: not if `NO_COLOR` is set; if `CLICOLOR_FORCE` is; else on a terminal that is not
-/// `dumb`, unless `CLICOLOR` is 0.
+/// Whether words on standard error are coloured: not if `NO_COLOR` is set; if `CLICOLOR_FORCE` is; else on a terminal
+/// that is not `dumb`, unless `CLICOLOR` is 0.
 ///
 /// Source: <https://no-color.org>, <https://bixense.com/clicolors>.
 pub(crate) fn wants_color() -> bool {

@@ -34,12 +34,12 @@ pub(super) struct Row {
     pub(super) samples: Vec<u32>,
 }
 
-/// Writes the film as an OpenEXR file with two layers: `color`, linear `R`, `G` and `B` as 32-bit floats, and `samples`, the
-/// rays through each pixel as 32-bit integers; both compressed by blocks of 16 rows (`ZIP`).
+/// Writes the film as an OpenEXR file with two layers: `color`, linear `R`, `G` and `B` as 32-bit floats, and
+/// `samples`, the rays through each pixel as 32-bit integers; both compressed by blocks of 16 rows (`ZIP`).
 ///
-/// The file's data window is the part that the label names. Without a label the film is the whole picture. The same film and
-/// label always give the same bytes. If the label says that pixels are missing, there is a channel `A`, zero where there are
-/// no samples.
+/// The file's data window is the part that the label names. Without a label the film is the whole picture. The same
+/// film and label always give the same bytes. If the label says that pixels are missing, there is a channel `A`, zero
+/// where there are no samples.
 ///
 /// # Errors
 /// Those of the writer; a film without pixels is [`io::ErrorKind::InvalidInput`].

@@ -112,7 +112,8 @@ pub fn read_label(file: File) -> io::Result<Option<Label>> {
     Reader::open(file).map(|(_, _, label)| label)
 }
 
-/// Joins `parts` to the picture `output`, byte for byte the one that an undivided render writes; returns its size in pixels.
+/// Joins `parts` to the picture `output`, byte for byte the one that an undivided render writes; returns its size in
+/// pixels.
 ///
 /// # Errors
 /// The parts are not all of one picture, overlap, or leave a gap, or a file cannot be read or written.

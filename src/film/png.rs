@@ -7,10 +7,11 @@ use super::{Film, Label, encode};
 /// The bytes of compressed data in each chunk.
 const CHUNK_BYTES: usize = 1 << 16;
 
-/// Writes the film as an 8-bit sRGB PNG with an `sRGB` chunk (perceptual rendering intent) and the label, if there is one.
+/// Writes the film as an 8-bit sRGB PNG with an `sRGB` chunk (perceptual rendering intent) and the label, if there is
+/// one.
 ///
-/// The same film and label always give the same bytes. If the label says that pixels are missing, those without samples are
-/// transparent.
+/// The same film and label always give the same bytes. If the label says that pixels are missing, those without samples
+/// are transparent.
 ///
 /// # Errors
 ///

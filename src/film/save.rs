@@ -67,7 +67,8 @@ impl OutputFile {
         self.format
     }
 
-    /// Writes the film, and the label where the format has a place for it, and puts the file into place; an existing picture is replaced at that moment.
+    /// Writes the film, and the label where the format has a place for it, and puts the file into place; an existing
+    /// picture is replaced at that moment.
     ///
     /// # Errors
     ///

@@ -11,11 +11,11 @@ const C2: f64 = 58.5225;
 
 /// The structural similarity of two pictures of one size, from -1 to 1, which only equal pictures reach.
 ///
-/// The mean over all pixels of (2 μ₁μ₂ + c₁)(2 σ₁₂ + c₂) / ((μ₁² + μ₂² + c₁)(σ₁² + σ₂² + c₂)) on the luma (Rec. 601) of the levels,
-/// within a Gaussian window of 11 × 11 pixels, cut off at the pictures' edges.
+/// The mean over all pixels of (2 μ₁μ₂ + c₁)(2 σ₁₂ + c₂) / ((μ₁² + μ₂² + c₁)(σ₁² + σ₂² + c₂)) on the luma (Rec. 601) of
+/// the levels, within a Gaussian window of 11 × 11 pixels, cut off at the pictures' edges.
 ///
-/// Source: Wang, Bovik, Sheikh & Simoncelli, "Image quality assessment: from error visibility to structural similarity",
-/// *IEEE Trans. Image Processing* 13(4) (2004).
+/// Source: Wang, Bovik, Sheikh & Simoncelli, "Image quality assessment: from error visibility to structural
+/// similarity", *IEEE Trans. Image Processing* 13(4) (2004).
 pub(super) fn ssim(a: &RgbImage, b: &RgbImage) -> f64 {
     let (width, height) = (a.width() as usize, a.height() as usize);
     let (a, b) = (luma(a), luma(b));

@@ -88,8 +88,8 @@ impl Cone {
     /// nearly equal radii are better made a cylinder.
     ///
     /// # Errors
-    /// Radii that are not positive, finite and different, or ends that are not finite or not apart, or an apex beyond all
-    /// numbers.
+    /// Radii that are not positive, finite and different, or ends that are not finite or not apart, or an apex beyond
+    /// all numbers.
     pub fn truncated(
         base: DVec3,
         top: DVec3,
@@ -226,7 +226,8 @@ impl Cone {
         if a > 0.0 {
             (near.y <= 0.0 && far.y <= 0.0).then(|| Interval::new(near.t, far.t))
         } else {
-            // Between the roots the line is outside; it enters or leaves the lower nappe once, at the finite root there.
+            // Between the roots the line is outside; it enters or leaves the lower nappe once, at the finite root
+            // there.
             let through = if dy < 0.0 {
                 if far.t.is_finite() { far } else { near }
             } else if near.t.is_finite() {

@@ -1,9 +1,9 @@
 //! What all bounded planes share: the watertight test of a ray against a convex outline, and the plane's equation.
 //!
 //! A vertex is sheared and scaled so that the ray runs along an axis; whether the ray passes an edge on the left or the
-//! right is then the sign of a 2×2 determinant, which
-//! [`difference_of_products`] gets right. The sheared vertex depends on ray and vertex only, so two shapes with a common
-//! edge agree about it and no ray slips between them; a ray that meets the edge exactly may be reported by either.
+//! right is then the sign of a 2×2 determinant, which [`difference_of_products`] gets right. The sheared vertex depends
+//! on ray and vertex only, so two shapes with a common edge agree about it and no ray slips between them; a ray that
+//! meets the edge exactly may be reported by either.
 //!
 //! Source: Woop, Benthin & Wald, "Watertight Ray/Triangle Intersection", *Journal of Computer Graphics Techniques*
 //! 2(1), 2013, with an exact sign in place of its double-precision fallback.
@@ -105,8 +105,8 @@ impl Outline {
     }
 }
 
-/// Where a line meets the plane through `vertex` square to `normal`; NaN if it is in it: a closed surface has other faces to be
-/// hit there.
+/// Where a line meets the plane through `vertex` square to `normal`; NaN if it is in it: a closed surface has other
+/// faces to be hit there.
 #[inline(always)]
 pub(super) fn parameter(vertex: DVec3, normal: DVec3, origin: DVec3, dir: DVec3) -> f64 {
     let t = fused_dot(normal, vertex - origin) / fused_dot(normal, dir);
@@ -209,8 +209,8 @@ pub(super) fn cross_lanes<const N: usize>(
     }
 }
 
-/// The surface of the plane through `vertex` square to the unit vector `normal`, where the ray along `dir` from `origin`
-/// meets it at `t`; `rest` is what rounding took from the origin. Without a branch, for loops over lanes.
+/// The surface of the plane through `vertex` square to the unit vector `normal`, where the ray along `dir` from
+/// `origin` meets it at `t`; `rest` is what rounding took from the origin. Without a branch, for loops over lanes.
 #[inline(always)]
 pub(super) fn surface(
     (vertex, normal): (DVec3, DVec3),

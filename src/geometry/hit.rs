@@ -64,8 +64,8 @@ pub struct Surface {
     pub local: DVec3,
     /// How far `point` may be from the true surface along `normal`.
     pub error: f64,
-    /// Surface coordinates from the lower left, for shapes that have them (sphere, quad, and a mesh that has some); else
-    /// zero.
+    /// Surface coordinates from the lower left, for shapes that have them (sphere, quad, and a mesh that has some);
+    /// else zero.
     pub uv: DVec2,
     /// The unit normal that light is bent by: `normal`, or that interpolated between the corners of a mesh. It has no
     /// say in which side of the surface a ray is on.

@@ -10,7 +10,8 @@ use super::{
 
 /// A shape that only rays from inside meet; to all others it is not there, to those of shadows neither.
 ///
-/// The inside is the side that [`Surface::normal`] points away from. Of a round shape a ray from outside thus meets the far wall.
+/// The inside is the side that [`Surface::normal`] points away from. Of a round shape a ray from outside thus meets the
+/// far wall.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Inward {
     shape: Shape,
@@ -117,7 +118,8 @@ mod tests {
         }
     }
 
-    /// Oracle: the chord of a circle, from a point of it at 45 degrees to the radius, is the radius times the root of two.
+    /// Oracle: the chord of a circle, from a point of it at 45 degrees to the radius, is the radius times the root of
+    /// two.
     #[test]
     fn a_ray_that_is_mirrored_inside_comes_to_the_next_place_of_the_wall() {
         let shape =

@@ -216,8 +216,8 @@ impl SurfaceLanes {
         self.facing.get(k) * self.side[k]
     }
 
-    /// Replaces the surface of a lane, if it `is_wanted`, by one that a ray along `dir` met, but for its own coordinates and its
-    /// tint.
+    /// Replaces the surface of a lane, if it `is_wanted`, by one that a ray along `dir` met, but for its own
+    /// coordinates and its tint.
     #[inline(always)]
     pub(super) fn set_if(&mut self, k: usize, is_wanted: bool, surface: &Surface, dir: DVec3) {
         let inside = surface.is_met_from_inside(dir);

@@ -1,8 +1,8 @@
 //! Triangle meshes: corners shared by index, with normals, surface coordinates and tints interpolated between them.
 //!
 //! A mesh keeps its corners exactly as given, in double precision; twelve bytes of indices make a triangle. The
-//! triangles are met by the watertight test of [`flat`](super::flat), so no ray slips between two that share an edge, whether
-//! they share it by index or by equal coordinates.
+//! triangles are met by the watertight test of [`flat`](super::flat), so no ray slips between two that share an edge,
+//! whether they share it by index or by equal coordinates.
 
 use std::sync::Arc;
 

@@ -10,8 +10,8 @@ use crate::math::{
 /// The mirror image of `dir` in the plane square to `normal`, both of any length: d − 2 (d·n)/(n·n) n.
 ///
 /// Errors that a single bounce does not show add up over a hundred thousand of them. The division is there because
-/// normals are of unit length only up to a rounding, which would make a ray steeper at each bounce. And every component is
-/// rounded but once, so that a direction that goes to and fro between two mirrors settles instead of drifting.
+/// normals are of unit length only up to a rounding, which would make a ray steeper at each bounce. And every component
+/// is rounded but once, so that a direction that goes to and fro between two mirrors settles instead of drifting.
 #[inline(always)]
 pub fn reflect(dir: DVec3, normal: DVec3) -> DVec3 {
     let (s, s_rest) = dot_parts(dir, normal);

@@ -103,8 +103,8 @@ impl Shape {
         }
     }
 
-    /// The parameters at which the lines of some `lanes` of rays cross the surface, in ascending order, NaN where they do not,
-    /// whatever surface they leave.
+    /// The parameters at which the lines of some `lanes` of rays cross the surface, in ascending order, NaN where they
+    /// do not, whatever surface they leave.
     ///
     /// Returns false, and does nothing, for shapes that are made for single rays.
     #[inline(always)]
@@ -130,8 +130,8 @@ impl Shape {
         true
     }
 
-    /// The surfaces where the rays of the lanes `met`, from free space, meet this shape at `t`; their own coordinates only
-    /// `with_uv`.
+    /// The surfaces where the rays of the lanes `met`, from free space, meet this shape at `t`; their own coordinates
+    /// only `with_uv`.
     ///
     /// Returns false, and does nothing, for shapes that are made for single rays.
     #[inline(always)]

@@ -49,8 +49,8 @@ impl Interval {
     }
 }
 
-/// The crossing of a ray that starts on the surface of a convex solid and goes into it: the end of the interval `ahead`,
-/// which starts at the ray's origin. A chord of no length, of a ray that grazes, is still crossed.
+/// The crossing of a ray that starts on the surface of a convex solid and goes into it: the end of the interval
+/// `ahead`, which starts at the ray's origin. A chord of no length, of a ray that grazes, is still crossed.
 #[inline(always)]
 pub(super) fn leaving(ahead: Option<Interval>) -> Crossings {
     let exit = |interval: Interval| Crossing {

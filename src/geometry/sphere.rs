@@ -95,7 +95,8 @@ impl Sphere {
         Surface { uv: Self::uv(surface.normal), ..surface }
     }
 
-    /// The surface in the direction `q` from the centre, without its own coordinates; and without a branch, for loops over lanes.
+    /// The surface in the direction `q` from the centre, without its own coordinates; and without a branch, for loops
+    /// over lanes.
     #[inline(always)]
     pub(super) fn surface_at(&self, q: DVec3) -> Surface {
         let normal = scale::unit_or(q, DVec3::Y); // a sphere may have no size in the scene

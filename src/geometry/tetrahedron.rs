@@ -6,9 +6,9 @@ use super::{shape_error::ShapeError, triangle::Triangle};
 
 /// The six planes of a regular tetrahedron: three sides, and the base cut in three about its centre.
 ///
-/// `base_center` is the middle of the base, `edge` the length of every edge and `turn` the angle in radians from +z towards
-/// +x at which the first corner of the base stands; the tip is above. The planes share their corners exactly, so
-/// that no ray slips between two of them, and face outward.
+/// `base_center` is the middle of the base, `edge` the length of every edge and `turn` the angle in radians from +z
+/// towards +x at which the first corner of the base stands; the tip is above. The planes share their corners exactly,
+/// so that no ray slips between two of them, and face outward.
 ///
 /// # Errors
 /// An edge that is not positive and finite, or a centre or angle that is not finite.
@@ -52,7 +52,8 @@ mod tests {
         }
     }
 
-    /// Oracle: on a closed surface every edge is met once each way, and the volume by the divergence theorem is a³/(6√2).
+    /// Oracle: on a closed surface every edge is met once each way, and the volume by the divergence theorem is
+    /// a³/(6√2).
     #[test]
     fn six_planes_close_the_solid_and_face_outward() {
         let planes = tetrahedron(DVec3::new(1.0, -2.0, 3.0), 2.0, 0.4).expect("a tetrahedron");

@@ -1,8 +1,8 @@
 //! Polygons into triangles, concave ones too, with nothing lost at their edges.
 //!
 //! Convex polygons are fans; the others are cut by ear clipping (the crate `earcut`, a port of Mapbox's). Ear clipping
-//! leaves out corners that lie on the line between their neighbours, which would leave cracks where another face uses them,
-//! so these are put back.
+//! leaves out corners that lie on the line between their neighbours, which would leave cracks where another face uses
+//! them, so these are put back.
 
 use glam::{DVec2, DVec3};
 

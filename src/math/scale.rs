@@ -40,7 +40,8 @@ pub fn unit(v: DVec3) -> Option<DVec3> {
     normalized(v).0.try_normalize()
 }
 
-/// The unit vector along `v`, or `other` if `v` is zero, subnormal or not finite; without a branch, for loops over lanes.
+/// The unit vector along `v`, or `other` if `v` is zero, subnormal or not finite; without a branch, for loops over
+/// lanes.
 #[inline(always)]
 pub(crate) fn unit_or(v: DVec3, other: DVec3) -> DVec3 {
     let size = v.abs();

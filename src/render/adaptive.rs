@@ -61,8 +61,8 @@ impl Adaptive {
         }
     }
 
-    /// Traces the centres of the area, and of the pixels around it, so that a part of a picture is that of the whole; returns
-    /// whether all are.
+    /// Traces the centres of the area, and of the pixels around it, so that a part of a picture is that of the whole;
+    /// returns whether all are.
     ///
     /// When `stop` says so, the pixels that are left have no samples, and nothing is to be refined.
     pub(super) fn begin<S: Sampler + Send>(

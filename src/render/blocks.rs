@@ -1,4 +1,5 @@
-//! A picture in blocks, each rendered by itself: what is kept of a render that is interrupted, and what bounds its memory.
+//! A picture in blocks, each rendered by itself: what is kept of a render that is interrupted, and what bounds its
+//! memory.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -15,7 +16,8 @@ use crate::{
 const RAYS: u64 = 1 << 20;
 /// Rays that a block of the adaptive mode would take if each of its pixels took the most.
 const MOST_RAYS: u64 = 1 << 22;
-/// The sides of blocks, in pixels. Adaptive blocks share no rays with their neighbours, so small ones trace many places twice.
+/// The sides of blocks, in pixels. Adaptive blocks share no rays with their neighbours, so small ones trace many places
+/// twice.
 const SMALLEST: u32 = 16;
 const SMALLEST_ADAPTIVE: u32 = 64;
 const LARGEST_ADAPTIVE: u32 = 256;
@@ -72,8 +74,8 @@ pub trait Sink: Sync {
     /// Takes a block. Only a picture towards an error or until a time that was stopped can have pixels without rays.
     fn put(&self, block: Block);
 
-    /// Takes a look at a picture towards an error or until a time, whose every pixel has a ray already: its place, colours and the rays
-    /// through each pixel.
+    /// Takes a look at a picture towards an error or until a time, whose every pixel has a ray already: its place,
+    /// colours and the rays through each pixel.
     fn show(&self, _place: &Tile, _colors: &[Rgb], _samples: &[u32]) {}
 
     /// Whether a picture towards an error or until a time is to be kept as it is now. Once it is asked for, until then.
@@ -81,7 +83,8 @@ pub trait Sink: Sync {
         false
     }
 
-    /// Keeps a picture towards an error or until a time, which may go on from it: because that is wanted, or because it is stopped.
+    /// Keeps a picture towards an error or until a time, which may go on from it: because that is wanted, or because it
+    /// is stopped.
     fn keep(&self, _unfinished: &Unfinished) {}
 
     /// Gives back what was kept of such a picture, to go on from.
@@ -89,8 +92,8 @@ pub trait Sink: Sync {
         None
     }
 
-    /// Whether no further block is to be begun. Blocks at which work goes on are finished; a picture towards an error or until
-    /// a time, which is one block, ends as it is.
+    /// Whether no further block is to be begun. Blocks at which work goes on are finished; a picture towards an error
+    /// or until a time, which is one block, ends as it is.
     fn is_stopped(&self) -> bool {
         false
     }
@@ -99,7 +102,8 @@ pub trait Sink: Sync {
     fn report(&self, _progress: Progress) {}
 }
 
-/// The blocks of the part `part` of a picture: they cover it without overlap, and depend on nothing else than is given here.
+/// The blocks of the part `part` of a picture: they cover it without overlap, and depend on nothing else than is given
+/// here.
 pub fn blocks(part: &Tile, aa: AntiAliasing, goal: Goal) -> Vec<Tile> {
     if goal != Goal::Mode {
         return vec![*part];
@@ -123,7 +127,8 @@ pub fn blocks(part: &Tile, aa: AntiAliasing, goal: Goal) -> Vec<Tile> {
 /// Renders a block, given its number and place and where to report its progress.
 type RenderBlock<'a> = dyn Fn(usize, &Tile, &(dyn Fn(Progress) + Sync)) -> Block + Sync + 'a;
 
-/// Renders each block that the sink wants with `render`, which reports its progress in units of which a pixel has `units`.
+/// Renders each block that the sink wants with `render`, which reports its progress in units of which a pixel has
+/// `units`.
 pub(super) fn run(blocks: &[Tile], units: u64, sink: &dyn Sink, render: &RenderBlock) {
     let size = |tile: &Tile| units * u64::from(tile.width()) * u64::from(tile.height());
     let total = blocks.iter().map(size).sum();

@@ -9,10 +9,11 @@ const FIRST_STEP: f64 = 1024.0;
 const STEPS_TO_HALF: f64 = 2.0;
 /// The last step: thresholds below make no difference to an 8-bit picture.
 pub(super) const LAST_STEP: u32 = 80;
-/// A pixel's squared error goes about like this power of the threshold: it falls like n^-1.6 with n samples, the rays of a stage grow
-/// like n, so its worth for each ray falls like n^-2.6.
+/// A pixel's squared error goes about like this power of the threshold: it falls like n^-1.6 with n samples, the rays
+/// of a stage grow like n, so its worth for each ray falls like n^-2.6.
 const ERROR_POWER: f64 = 1.6 / 2.6;
-/// The part of that which is left on average, because pixels go on by whole stages; rather too small, so as not to overshoot.
+/// The part of that which is left on average, because pixels go on by whole stages; rather too small, so as not to
+/// overshoot.
 const LEFT: f64 = 0.5;
 /// The most levels of the ladder that are taken at once towards an error.
 const LONGEST_STEP: usize = 12;
@@ -106,8 +107,8 @@ impl Demand {
         self.rays[..=level].iter().sum()
     }
 
-    /// The lowest level whose stages take at most so many rays, not far below the first that has any, which is taken if even
-    /// that takes more; none if there are no stages.
+    /// The lowest level whose stages take at most so many rays, not far below the first that has any, which is taken if
+    /// even that takes more; none if there are no stages.
     pub(super) fn level_for(&self, rays: f64) -> Option<usize> {
         let first = (0..self.rays.len()).find(|&level| self.rays[level] > 0)?;
         let last = (first + LEVELS_AT_ONCE).min(self.rays.len() - 1);

@@ -63,10 +63,11 @@ impl Unfinished {
         self.adaptive.has_begun().then(|| self.adaptive.estimated_rmse())
     }
 
-    /// Refines where the squared error for each ray is largest, until the estimate is `wanted` levels or less, or `watch` stops it.
+    /// Refines where the squared error for each ray is largest, until the estimate is `wanted` levels or less, or
+    /// `watch` stops it.
     ///
-    /// The threshold goes down a fixed ladder, and the picture is that of the threshold at which it ends: what is spent on the way
-    /// is part of it.
+    /// The threshold goes down a fixed ladder, and the picture is that of the threshold at which it ends: what is spent
+    /// on the way is part of it.
     pub(super) fn reach_error<S: Sampler + Send>(
         mut self,
         crew: &Crew<S>,
@@ -121,8 +122,8 @@ impl Unfinished {
 
     /// Refines where the squared error for each ray is largest, until `end`, or until `watch` stops it.
     ///
-    /// Each step takes a part of the time left, as predicted from the rays before; the pixels of the last one are taken by chance,
-    /// so that no part of the picture is left out.
+    /// Each step takes a part of the time left, as predicted from the rays before; the pixels of the last one are taken
+    /// by chance, so that no part of the picture is left out.
     pub(super) fn reach_time<S: Sampler + Send>(
         mut self,
         crew: &Crew<S>,
@@ -158,7 +159,8 @@ impl Unfinished {
         }
     }
 
-    /// Takes a step that should take a part of the time `left` until `end`; returns whether there was anything to refine.
+    /// Takes a step that should take a part of the time `left` until `end`; returns whether there was anything to
+    /// refine.
     fn step_within<S: Sampler + Send>(
         &mut self,
         crew: &Crew<S>,

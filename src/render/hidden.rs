@@ -12,8 +12,8 @@ const CENTERS: u32 = 9;
 /// How many of the eight neighbours may have but little contrast.
 const CALM: usize = 2;
 
-/// The squared error, beyond what its own look tells, that a suspect pixel of `area` is expected to have whose eight neighbours have
-/// its colour: where nearly all of these differ from their own neighbours, the likeness is chance.
+/// The squared error, beyond what its own look tells, that a suspect pixel of `area` is expected to have whose eight
+/// neighbours have its colour: where nearly all of these differ from their own neighbours, the likeness is chance.
 ///
 /// What the pixel gets must not depend on it, or it would on places more than a pixel away.
 pub(super) fn hidden_error(area: &Area, pixels: &Plane<Pixel>, x: i64, y: i64) -> f32 {

@@ -17,8 +17,8 @@ use crate::{
     color::Rgb,
 };
 
-/// The samples that a pixel gets at least where a pattern's cells are no wider than it: its centre and corners, and those of its
-/// neighbours, may all have met the same colour.
+/// The samples that a pixel gets at least where a pattern's cells are no wider than it: its centre and corners, and
+/// those of its neighbours, may all have met the same colour.
 const LEAST_IN_CELLS: u32 = 8;
 
 /// What is known of the pixels of an area.

@@ -11,11 +11,12 @@ use crate::{
 /// The widest tile.
 const SIDE: usize = TILE_SIDE as usize;
 
-/// The least contrast, in squared levels, of a pixel whose eight neighbours are not all of its own colour to the eye: two levels off
-/// on average.
+/// The least contrast, in squared levels, of a pixel whose eight neighbours are not all of its own colour to the eye:
+/// two levels off on average.
 pub(super) const ONE_COLOR: f32 = 8.0 * 4.0;
 
-/// The centres of a tile and of the pixels around it, encoded; pixels outside of what is known repeat those at its edge.
+/// The centres of a tile and of the pixels around it, encoded; pixels outside of what is known repeat those at its
+/// edge.
 pub(super) struct Window {
     /// Display levels, channel by channel.
     levels: [Vec<f32>; 3],
@@ -118,12 +119,12 @@ impl Window {
     }
 }
 
-/// Whether a suspect pixel is about as wide as the cells of the pattern in it, so that some may lie unseen between the centres about
-/// it; `contrast` is its [`Look`]'s.
+/// Whether a suspect pixel is about as wide as the cells of the pattern in it, so that some may lie unseen between the
+/// centres about it; `contrast` is its [`Look`]'s.
 ///
-/// So it is where all neighbours but two at most met other cells than its own; where cells are wider, no more than five do. So it is
-/// too where one at a side did, though all have the same colour: where two cells meet their colours differ, so there is another
-/// one on the way.
+/// So it is where all neighbours but two at most met other cells than its own; where cells are wider, no more than five
+/// do. So it is too where one at a side did, though all have the same colour: where two cells meet their colours
+/// differ, so there is another one on the way.
 pub(super) fn skips_cells(centers: &Plane<Sample>, x: i64, y: i64, contrast: f32) -> bool {
     const MOST_ALIKE: usize = 2;
     let cell = centers.at(x, y).cell;
@@ -137,8 +138,8 @@ pub(super) fn skips_cells(centers: &Plane<Sample>, x: i64, y: i64, contrast: f32
             && ![(-1, 0), (1, 0), (0, -1), (0, 1)].iter().all(|&(dx, dy)| is_own(dx, dy))
 }
 
-/// The colour of the centre at a place in the middle one of three rows, in all of which it has neighbours, with the second-order term of
-/// the integral over the pixel: c + (E + W + N + S - 4c)/24.
+/// The colour of the centre at a place in the middle one of three rows, in all of which it has neighbours, with the
+/// second-order term of the integral over the pixel: c + (E + W + N + S - 4c)/24.
 #[inline]
 pub(super) fn corrected([above, row, below]: &[&[Sample]; 3], place: usize) -> Rgb {
     let center = row[place].color;

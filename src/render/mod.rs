@@ -71,19 +71,19 @@ pub enum Goal {
     /// What the anti-aliasing mode says of each pixel.
     #[default]
     Mode,
-    /// An estimated error of the part that is rendered: root mean square of all channels, in levels of 255. Rays go where they
-    /// reduce it most. Needs the adaptive mode, whose own error is not minded.
+    /// An estimated error of the part that is rendered: root mean square of all channels, in levels of 255. Rays go
+    /// where they reduce it most. Needs the adaptive mode, whose own error is not minded.
     Error(f64),
-    /// The least error until then, but one ray in each pixel at least. Needs the adaptive mode, whose own error is not minded.
-    /// How far it gets depends on the machine, so this picture is not the same every time.
+    /// The least error until then, but one ray in each pixel at least. Needs the adaptive mode, whose own error is not
+    /// minded. How far it gets depends on the machine, so this picture is not the same every time.
     Until(Instant),
 }
 
 /// How a render ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outcome {
-    /// The squared error in levels for each ray, of the pixel's next stage, at which pixels stopped, if the goal was an error:
-    /// the same value gives the same pixels, whatever part is rendered.
+    /// The squared error in levels for each ray, of the pixel's next stage, at which pixels stopped, if the goal was an
+    /// error: the same value gives the same pixels, whatever part is rendered.
     pub per_ray: Option<f32>,
     /// The error that was wanted but not reached.
     pub missed_error: Option<f64>,
@@ -111,8 +111,8 @@ pub struct Progress {
 pub struct Rendering {
     /// The picture.
     pub film: Film,
-    /// The estimated squared error of each pixel, in levels of 255, in the order of [`Film::pixels`]; empty if they were not
-    /// kept.
+    /// The estimated squared error of each pixel, in levels of 255, in the order of [`Film::pixels`]; empty if they
+    /// were not kept.
     pub errors: Vec<f32>,
     /// The picture's estimated error against the exact average over each pixel: root mean square of all channels, in levels of
     /// 255; `None` by the classical rules, which estimate nothing.

@@ -8,7 +8,8 @@ use super::{
 };
 use crate::aa::{Sample, refined::Stage};
 
-/// Rays that the corners of a suspect pixel cost, most being shared or not traced; and those of one that is not suspect.
+/// Rays that the corners of a suspect pixel cost, most being shared or not traced; and those of one that is not
+/// suspect.
 const SHARED_CORNERS: f32 = 0.6;
 const OWN_CORNERS: f32 = 1.5;
 

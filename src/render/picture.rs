@@ -45,9 +45,11 @@ impl Picture {
     }
 }
 
-/// The part `part` of a picture `width` pixels wide, of whatever `new_sampler`'s samplers see; each worker thread has its own.
+/// The part `part` of a picture `width` pixels wide, of whatever `new_sampler`'s samplers see; each worker thread has
+/// its own.
 ///
-/// Every pixel depends on its place in the whole picture and on what is seen within a pixel's width around it, never on `part`.
+/// Every pixel depends on its place in the whole picture and on what is seen within a pixel's width around it, never on
+/// `part`.
 pub fn picture<S: Sampler + Send>(
     part: &Tile,
     width: u32,
@@ -104,8 +106,8 @@ pub(super) fn picture_watched<S: Sampler + Send>(
     }
 }
 
-/// How much of [`Progress`] a pixel is, of which its centre is one: the adaptive mode goes over it twice, and on the way to a goal the
-/// centres are the least of it.
+/// How much of [`Progress`] a pixel is, of which its centre is one: the adaptive mode goes over it twice, and on the
+/// way to a goal the centres are the least of it.
 pub(super) fn progress_units(aa: AntiAliasing, goal: Goal) -> u64 {
     match (aa, goal) {
         (AntiAliasing::Adaptive { .. }, Goal::Mode) => 2,

@@ -87,8 +87,8 @@ pub(super) fn sequence<S: Sampler + Send>(
     even(crew, area, count, places, judge, sequence_unseen(count))
 }
 
-/// `count` rays through each pixel at the places that `pixel_places` adds to a list. `judge` tells the squared error of their
-/// mean from their display levels; where they are alike, `unseen` of the contrast to the neighbours is added.
+/// `count` rays through each pixel at the places that `pixel_places` adds to a list. `judge` tells the squared error of
+/// their mean from their display levels; where they are alike, `unseen` of the contrast to the neighbours is added.
 fn even<S: Sampler + Send>(
     crew: &Crew<S>,
     area: &Area,

@@ -14,7 +14,8 @@ pub(super) const TILE_SIDE: u32 = 16;
 /// Values that a thread takes at least, where all of a plane's are gone through.
 pub(super) const AT_ONCE: usize = 1 << 14;
 
-/// A rectangle of pixels, half open, in columns and rows of the whole picture; those of its apron have -1 and width or height.
+/// A rectangle of pixels, half open, in columns and rows of the whole picture; those of its apron have -1 and width or
+/// height.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Area {
     pub(super) x0: i64,
@@ -89,7 +90,8 @@ pub(super) struct Plane<T> {
 }
 
 impl<T: Clone + Send + Sync> Plane<T> {
-    /// The same value everywhere. All threads write it, because pages of memory take their time when they are first written to.
+    /// The same value everywhere. All threads write it, because pages of memory take their time when they are first
+    /// written to.
     pub(super) fn new(area: Area, value: T) -> Self {
         let places = (0..area.len()).into_par_iter().with_min_len(AT_ONCE);
         Self { area, values: places.map(|_| value.clone()).collect() }

@@ -45,7 +45,8 @@ pub struct Shown {
     pub started: Instant,
     /// The time it took, in seconds, once it is done.
     pub seconds: Option<f64>,
-    /// The estimated error of the pixels that the last pass has finished: root mean square of all channels, in levels of 255.
+    /// The estimated error of the pixels that the last pass has finished: root mean square of all channels, in levels
+    /// of 255.
     pub estimated_rmse: Option<f64>,
 }
 
@@ -89,8 +90,9 @@ impl Canvas {
         Some(self.look()).filter(|shown| shown.number == number)
     }
 
-    /// Renders the picture `number`, pass by pass, until it is done or another one was begun. `changed` is called from the worker
-    /// threads when there is more to see; `goes_on` after each pass, and says whether the next one is wanted.
+    /// Renders the picture `number`, pass by pass, until it is done or another one was begun. `changed` is called from
+    /// the worker threads when there is more to see; `goes_on` after each pass, and says whether the next one is
+    /// wanted.
     ///
     /// When it is done, the film is that of [`render`](super::render) with the same options.
     ///

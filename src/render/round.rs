@@ -37,7 +37,8 @@ pub(super) enum Threshold {
 }
 
 impl Threshold {
-    /// Whether pixels above it go on until they are below or may get no more, so that what their samples were is not asked again.
+    /// Whether pixels above it go on until they are below or may get no more, so that what their samples were is not
+    /// asked again.
     pub(super) fn is_final(self) -> bool {
         matches!(self, Self::Error(_))
     }
@@ -168,7 +169,8 @@ impl Round<'_> {
         one.has_changed = true;
     }
 
-    /// Gives the pixels in the places `wanting` the samples of their next stage; returns whether there was time for all.
+    /// Gives the pixels in the places `wanting` the samples of their next stage; returns whether there was time for
+    /// all.
     pub(super) fn give<S: Sampler + Send>(
         &self,
         wanting: &[usize],

@@ -1,7 +1,7 @@
 //! A scene as its text says it: plain data, not yet checked. The text is TOML; every field's unit is said here.
 //!
-//! Lengths are in scene units, axes right-handed with y up, angles in degrees. Colours are sRGB display values from 0 to 1;
-//! all other weights are plain linear numbers.
+//! Lengths are in scene units, axes right-handed with y up, angles in degrees. Colours are sRGB display values from 0
+//! to 1; all other weights are plain linear numbers.
 
 use std::collections::BTreeMap;
 

@@ -16,8 +16,8 @@ use crate::{
 const AT_ONCE: usize = 1 << 16;
 
 impl Scene {
-    /// A hash of shapes, materials, textures, lights, background, camera and cutoff, in hexadecimal digits: scenes that hash
-    /// alike look alike, whatever their files are called and however they are written.
+    /// A hash of shapes, materials, textures, lights, background, camera and cutoff, in hexadecimal digits: scenes that
+    /// hash alike look alike, whatever their files are called and however they are written.
     ///
     /// What a user may choose for a picture, such as its size and the depth of recursion, is not in it.
     pub fn hash(&self) -> String {

@@ -176,7 +176,8 @@ impl Scene {
         self.aa
     }
 
-    /// Has rays traced by the instructions of `isa`, or the portable ones where the machine lacks them; the picture is the same.
+    /// Has rays traced by the instructions of `isa`, or the portable ones where the machine lacks them; the picture is
+    /// the same.
     #[must_use]
     pub fn with_isa(mut self, isa: Isa) -> Self {
         self.accel.set_isa(isa);

@@ -19,8 +19,9 @@ pub struct Orbit {
 }
 
 impl Orbit {
-    /// A camera that starts as `plan`, which sees something, and turns about the point on its line of sight at `distance`, such as that of the
-    /// nearest surface; about the one it looks at if the distance is not positive and finite.
+    /// A camera that starts as `plan`, which sees something, and turns about the point on its line of sight at
+    /// `distance`, such as that of the nearest surface; about the one it looks at if the distance is not positive and
+    /// finite.
     pub fn new(plan: CameraPlan, distance: Option<f64>) -> Self {
         let own = (plan.look_at - plan.eye).length();
         let distance = distance.filter(|d| *d > 0.0 && d.is_finite()).unwrap_or(own);
@@ -58,8 +59,8 @@ impl Orbit {
         }
     }
 
-    /// Turns about the point in the middle: to the side about the up direction, and upwards, in degrees; no further up or down than
-    /// almost along the up direction.
+    /// Turns about the point in the middle: to the side about the up direction, and upwards, in degrees; no further up
+    /// or down than almost along the up direction.
     pub fn turn(&mut self, aside: f64, upwards: f64) {
         let (back, up) = (self.back(), self.now.up.normalize_or(DVec3::Y));
         let pivot = self.now.eye - back;
@@ -80,8 +81,8 @@ impl Orbit {
         self.go(pivot, back.normalize_or_zero() * length);
     }
 
-    /// Moves eye and point alike, so that what is in the middle is displaced on the picture by `by`, in picture heights, to the right
-    /// and up.
+    /// Moves eye and point alike, so that what is in the middle is displaced on the picture by `by`, in picture
+    /// heights, to the right and up.
     pub fn pan(&mut self, by: DVec2) {
         let back = self.back();
         let [right, up] = self.sides();

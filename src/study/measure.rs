@@ -12,8 +12,8 @@ use crate::{
     scene::{Scene, SceneError},
 };
 
-/// Measures all that `plan` asks for; `load` finds scenes by their names and `folder` keeps converged pictures for the next
-/// time.
+/// Measures all that `plan` asks for; `load` finds scenes by their names and `folder` keeps converged pictures for the
+/// next time.
 ///
 /// # Errors
 /// A scene cannot be loaded, a render fails, or a converged picture cannot be written.
@@ -223,7 +223,8 @@ fn row(
     }
 }
 
-/// Times and rays as multiples of those of the mode `none`, if it is among the rows; of several, that with the usual tree.
+/// Times and rays as multiples of those of the mode `none`, if it is among the rows; of several, that with the usual
+/// tree.
 fn relate(rows: &mut [Row]) {
     let usual = Preset::Auto.to_string();
     let is_base = |row: &&Row| row.mode == "none" && row.build == usual;

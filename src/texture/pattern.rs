@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use crate::{color::Rgb, geometry::Similarity};
 
-/// A number of a pair of whole numbers that tells it from its neighbours, and from those that are skipped where a pixel is wider than
-/// a cell.
+/// A number of a pair of whole numbers that tells it from its neighbours, and from those that are skipped where a pixel
+/// is wider than a cell.
 #[inline(always)]
 fn number([a, b]: [f64; 2]) -> u32 {
     let word = |x: f64| (x as i64) as u32;
@@ -106,7 +106,8 @@ mod tests {
         assert_eq!(checker.at(DVec3::new(-3.0, 0.0, -3.0)).0, A);
     }
 
-    /// Oracle: the formula of the assignment in integers, with ⌊x + y − 5⌋ and ⌊x − y − 5⌋, negative coordinates included.
+    /// Oracle: the formula of the assignment in integers, with ⌊x + y − 5⌋ and ⌊x − y − 5⌋, negative coordinates
+    /// included.
     #[test]
     fn plaid_is_that_of_the_assignment() {
         let plaid =

@@ -1,7 +1,7 @@
 //! The shading rules that classical ray tracers were compared by, for counting the same rays as they did.
 //!
-//! They differ from the rest of this program on purpose: opaque surfaces are seen from their front only, everything that
-//! reflects or transmits does so from both sides, and shadow rays stop at glass.
+//! They differ from the rest of this program on purpose: opaque surfaces are seen from their front only, everything
+//! that reflects or transmits does so from both sides, and shadow rays stop at glass.
 //!
 //! Source: Haines, "A Proposal for Standard Graphics Environments", *IEEE CG&A* 7(11) (1987), as the figures for the
 //! Standard Procedural Databases are counted.
@@ -67,8 +67,8 @@ impl<'a> ClassicTracer<'a> {
         }
     }
 
-    /// Whether a surface is seen wherever it is hit: glass, patches, which have normals of their own, and what is hit from inside
-    /// only.
+    /// Whether a surface is seen wherever it is hit: glass, patches, which have normals of their own, and what is hit
+    /// from inside only.
     fn is_seen(&self, primitive: u32) -> bool {
         self.scene.material(primitive).is_transmissive()
             || match self.scene.shape(primitive) {

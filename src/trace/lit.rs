@@ -33,7 +33,8 @@ pub(super) struct Lit {
     scatter: Singles,
     shine: Singles,
     exponent: Column,
-    /// Towards the light at hand: the way from where rays start, the cosine of its angle to the normal, and to the mirror direction.
+    /// Towards the light at hand: the way from where rays start, the cosine of its angle to the normal, and to the
+    /// mirror direction.
     toward: Vectors,
     cosine: Column,
     mirrored: Column,

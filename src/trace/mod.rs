@@ -2,8 +2,8 @@
 //!
 //! The recursion is a work list of rays, each with the weight of its answer in its sample and its level, so the call
 //! stack stays flat however deep it goes. Rays are taken from the end of the list in batches of one level: those of a
-//! batch are traced together, then lit together light by light (module `lit`), because rays that start or end in one point
-//! are cheaper together. What a sample becomes does not depend on the batches: its parts are summed in fixed
+//! batch are traced together, then lit together light by light (module `lit`), because rays that start or end in one
+//! point are cheaper together. What a sample becomes does not depend on the batches: its parts are summed in fixed
 //! point (module `sum`), where order does not matter.
 
 pub mod classic;
@@ -46,8 +46,8 @@ const WEIGHT_OF_CELLS: f32 = 0.25;
 pub struct Sample {
     /// The light that comes back, linear and not clamped.
     pub color: Rgb,
-    /// A hash of all that the ray tree met: surfaces and their sides, cells of patterns, which lights were seen through what.
-    /// Two samples with the same signature differ by what varies smoothly.
+    /// A hash of all that the ray tree met: surfaces and their sides, cells of patterns, which lights were seen through
+    /// what. Two samples with the same signature differ by what varies smoothly.
     pub signature: u32,
     /// A number of the cells of patterns that it shows, itself or by what it reflects and transmits; 0 for none.
     pub cell: u32,
@@ -146,7 +146,8 @@ impl<'a> Tracer<'a> {
         self.counts
     }
 
-    /// What up to [`BATCH`] camera rays from `eye` along `dirs`, in the scene's own coordinates, show; `samples` gets one for each.
+    /// What up to [`BATCH`] camera rays from `eye` along `dirs`, in the scene's own coordinates, show; `samples` gets
+    /// one for each.
     pub(crate) fn trace(
         &mut self,
         eye: DVec3,
@@ -235,8 +236,8 @@ impl<'a> Tracer<'a> {
         self.show();
     }
 
-    /// Takes the hits of one primitive in the lanes `same`: finds the surfaces there, puts what comes to them by reflection and
-    /// transmission on the list, and themselves among those to be lit.
+    /// Takes the hits of one primitive in the lanes `same`: finds the surfaces there, puts what comes to them by
+    /// reflection and transmission on the list, and themselves among those to be lit.
     #[inline(always)]
     fn meet(&mut self, primitive: u32, same: u64, is_camera: bool) {
         let scene = self.scene;

@@ -5,8 +5,8 @@ use glam::DVec3;
 use super::RayCounts;
 use crate::geometry::{Surface, reflect, refract};
 
-/// The direction in which a ray goes on behind a surface, and counts it; `None` if it is totally reflected, which transmits
-/// nothing.
+/// The direction in which a ray goes on behind a surface, and counts it; `None` if it is totally reflected, which
+/// transmits nothing.
 #[inline(always)]
 pub(super) fn transmitted(
     counts: &mut RayCounts,
@@ -25,8 +25,8 @@ pub(super) fn transmitted(
     Some(refracted)
 }
 
-/// The mirror direction of `dir` by the shading normal. Where that points below the surface, as it may at a grazing view
-/// of a coarse mesh, it is mirrored up again.
+/// The mirror direction of `dir` by the shading normal. Where that points below the surface, as it may at a grazing
+/// view of a coarse mesh, it is mirrored up again.
 #[inline(always)]
 pub(super) fn mirrored(dir: DVec3, surface: &Surface, inside: bool) -> DVec3 {
     let side = if inside { -1.0 } else { 1.0 };

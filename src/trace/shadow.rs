@@ -26,8 +26,8 @@ impl Passed {
         self.lanes
     }
 
-    /// The part of each channel that arrives in a lane, the product of the transmissions of all surfaces crossed, without refraction;
-    /// and a hash of these.
+    /// The part of each channel that arrives in a lane, the product of the transmissions of all surfaces crossed,
+    /// without refraction; and a hash of these.
     pub(super) fn through(&self, scene: &Scene, lane: usize) -> (Rgb, u32) {
         let first = self.crossings.partition_point(|crossing| crossing.0 < lane);
         let own = self.crossings[first..].iter().take_while(|crossing| crossing.0 == lane);
@@ -38,8 +38,8 @@ impl Passed {
     }
 }
 
-/// The lanes whose rays, which have the light at `target` at `t = 1`, meet anything opaque; `passed` gets what those that do not
-/// cross, in the order of lanes and distances.
+/// The lanes whose rays, which have the light at `target` at `t = 1`, meet anything opaque; `passed` gets what those
+/// that do not cross, in the order of lanes and distances.
 #[inline(always)]
 pub(super) fn cast(scene: &Scene, rays: &RayLanes, target: DVec3, passed: &mut Passed) -> u64 {
     let Passed { crossings, lanes } = passed;

@@ -1,7 +1,7 @@
 //! What a ray tree met, as a hash.
 //!
-//! Each hit is hashed with the branches that led to it; a sample's signature is the sum over its hits, which does not depend
-//! on the order they come in.
+//! Each hit is hashed with the branches that led to it; a sample's signature is the sum over its hits, which does not
+//! depend on the order they come in.
 
 use crate::light::Light;
 

@@ -4,9 +4,9 @@ use crate::color::Rgb;
 
 /// A sum of colours in fixed point, 2⁻⁴⁰ a unit.
 ///
-/// Integers add up to the same whatever their order; floating-point numbers do not, and the order in which a sample's rays come
-/// back depends on what else is traced beside it. The unit is a 16-millionth of the last bit of a picture with 16 bits
-/// a channel; sums up to eight million fit, and saturate beyond.
+/// Integers add up to the same whatever their order; floating-point numbers do not, and the order in which a sample's
+/// rays come back depends on what else is traced beside it. The unit is a 16-millionth of the last bit of a picture
+/// with 16 bits a channel; sums up to eight million fit, and saturate beyond.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Sum([i64; 3]);
 

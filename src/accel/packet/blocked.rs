@@ -24,12 +24,12 @@ const SLACK: f32 = 1.0 / (1 << 20) as f32;
 /// A ray that starts further from the light than this, in the tree's frame, is traced by itself.
 const FURTHEST: f64 = (1 << 26) as f64;
 
-/// A part of a beam that was too wide meets too much if it is wider than the first or, times the cube root of the number of
-/// primitives, than the second.
+/// A part of a beam that was too wide meets too much if it is wider than the first or, times the cube root of the
+/// number of primitives, than the second.
 const WIDEST_PART: [f32; 2] = [0.12, 2.6];
 
-/// The search for what blocks rays that end, at `t = 1`, in one point. If they are too far from each other, parts of them are traced
-/// together.
+/// The search for what blocks rays that end, at `t = 1`, in one point. If they are too far from each other, parts of
+/// them are traced together.
 pub(in crate::accel) struct BlockedPacket<'a, B, V> {
     pub(in crate::accel) accel: &'a Accel,
     pub(in crate::accel) rays: &'a RayLanes<'a>,

@@ -1,7 +1,8 @@
 //! Which rays of a packet meet a leaf's box.
 //!
-//! The arithmetic is that of a single ray, in slopes and depths: with u = 2⁻²⁴, where a ray begins is off by 2 u, its slope at the largest
-//! depth by 2.3 u, that depth by 4 u, and what they give by 11 u, less than the 32 u of the boxes' pads.
+//! The arithmetic is that of a single ray, in slopes and depths: with u = 2⁻²⁴, where a ray begins is off by 2 u, its
+//! slope at the largest depth by 2.3 u, that depth by 4 u, and what they give by 11 u, less than the 32 u of the boxes'
+//! pads.
 
 use super::{GROUP, Packet, load, open, walk::Visit};
 use crate::{

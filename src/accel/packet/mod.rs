@@ -1,10 +1,10 @@
 //! Up to 64 rays that share a point, traced together.
 //!
-//! The nodes are tested against their [`Beam`], once for all. Of a leaf of triangles, which are [seen](eye) from the common point,
-//! each is tested against the rays, eight at a time; of other leaves the box is, and a leaf of one sphere or flat shape is then
-//! tried by all of them in a loop over the lanes, which vectors can do, the primitives of others by each ray that may meet them. What
-//! decides is the shapes' own arithmetic, so the answers are, to the bit, those of single rays; that a lane tries what it need
-//! not have tried makes no difference.
+//! The nodes are tested against their [`Beam`], once for all. Of a leaf of triangles, which are [seen](eye) from the
+//! common point, each is tested against the rays, eight at a time; of other leaves the box is, and a leaf of one sphere
+//! or flat shape is then tried by all of them in a loop over the lanes, which vectors can do, the primitives of others
+//! by each ray that may meet them. What decides is the shapes' own arithmetic, so the answers are, to the bit, those of
+//! single rays; that a lane tries what it need not have tried makes no difference.
 
 mod blocked;
 mod boxes;
@@ -45,8 +45,8 @@ const ASIDE: f32 = -1.0;
 /// The limit of a lane whose ray is blocked.
 const BLOCKED: f32 = -2.0;
 
-/// How far corners may be from where a ray begins, which is at most 4 to either side of the tree: twice as far as for a single ray, and
-/// so are the errors.
+/// How far corners may be from where a ray begins, which is at most 4 to either side of the tree: twice as far as for a
+/// single ray, and so are the errors.
 const REACH: f32 = 8.0;
 
 /// The rays of a packet in the tree's frame, as lines along their axis, and the beam about them.
@@ -74,12 +74,12 @@ enum Apart {
 
 /// What the rays of a packet search for.
 trait Searches<S: Simd> {
-    /// Tries the primitive in `place` with the rays of the lanes `met`; this and the next may lower their limits. Must be
-    /// `#[inline(always)]`.
+    /// Tries the primitive in `place` with the rays of the lanes `met`; this and the next may lower their limits. Must
+    /// be `#[inline(always)]`.
     fn test(&mut self, simd: S, packet: &mut Packet, place: usize, met: u64);
 
-    /// Takes the primitive of a leaf in `place` for the ray of lane `k`, which may meet it, or certainly does, for the first time
-    /// between two depths. Must be `#[inline(always)]`.
+    /// Takes the primitive of a leaf in `place` for the ray of lane `k`, which may meet it, or certainly does, for the
+    /// first time between two depths. Must be `#[inline(always)]`.
     fn take(
         &mut self,
         simd: S,
@@ -91,9 +91,9 @@ trait Searches<S: Simd> {
 }
 
 impl Packet {
-    /// The packet of rays that share the point `point`, from where `toward` times their directions lead, unless their beam is wider
-    /// than `widest` or they go further than `furthest` in one unit of their parameter. They end where that is `end`, give or
-    /// take `slack` in depth.
+    /// The packet of rays that share the point `point`, from where `toward` times their directions lead, unless their
+    /// beam is wider than `widest` or they go further than `furthest` in one unit of their parameter. They end where
+    /// that is `end`, give or take `slack` in depth.
     #[inline(always)]
     fn new(
         tree: &Tree,

@@ -63,8 +63,8 @@ struct Nearest<'a> {
     hits: &'a mut HitLanes,
     /// Where the lanes cross the primitive that is tried.
     crossed: [Column; 2],
-    /// The place of a certain hit of each lane, beyond all if there is none, that has not been decided in double precision because
-    /// it may never matter, and what its depth is not less than.
+    /// The place of a certain hit of each lane, beyond all if there is none, that has not been decided in double
+    /// precision because it may never matter, and what its depth is not less than.
     pending: [u32; LANES],
     from: Singles,
 }

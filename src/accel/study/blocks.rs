@@ -56,7 +56,8 @@ pub(in crate::accel) struct Found {
 }
 
 impl Found {
-    /// Calls `take(place, t)`, `t` being the tree's, for every hit, until it returns that it stops; returns whether it did.
+    /// Calls `take(place, t)`, `t` being the tree's, for every hit, until it returns that it stops; returns whether it
+    /// did.
     #[inline(always)]
     pub(in crate::accel) fn for_each(&self, mut take: impl FnMut(u32, f32) -> bool) -> bool {
         for (hits, t) in self.hits.into_iter().zip(&self.t) {

@@ -1,5 +1,5 @@
-//! For `benches/precision.rs` alone, behind the feature `leaf-study`: the same searches with the textbook's leaf tests in single
-//! precision, so that what the robust tests cost can be measured, and counts of the robust ones.
+//! For `benches/precision.rs` alone, behind the feature `leaf-study`: the same searches with the textbook's leaf tests
+//! in single precision, so that what the robust tests cost can be measured, and counts of the robust ones.
 //!
 //! Everything here is what the program itself does *not* do: it accepts what a single-precision test says, and
 //! ignores whatever is nearer than a fixed epsilon.

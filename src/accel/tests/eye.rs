@@ -45,7 +45,8 @@ fn goal([a, b, c]: [DVec3; 3], random: &mut Random) -> DVec3 {
         }
 }
 
-/// Where to look from at a mesh about `center`: near it, in the plane of a triangle, at a corner, and from further and further away.
+/// Where to look from at a mesh about `center`: near it, in the plane of a triangle, at a corner, and from further and
+/// further away.
 fn eyes(mesh: &[[DVec3; 3]], center: DVec3, random: &mut Random) -> Vec<DVec3> {
     let [a, b, c] = mesh[random.below(mesh.len())];
     let mut eyes = vec![a + (b - a) * 30.0 + (c - a) * 20.0, a, (a + b + c) / 3.0];

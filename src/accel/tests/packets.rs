@@ -161,8 +161,8 @@ fn packets_agree_with_single_rays() {
     assert!(hits > 5_000, "{hits} rays hit");
 }
 
-/// Oracle: the single rays. Packets from afar must be traced as such, though some of their rays pass the scene by, and so must
-/// the shadows that end there.
+/// Oracle: the single rays. Packets from afar must be traced as such, though some of their rays pass the scene by, and
+/// so must the shadows that end there.
 #[test]
 fn packets_from_afar_agree_with_single_rays() {
     let mut random = Random(4096);

@@ -46,8 +46,8 @@ fn bits(rendering: &Rendering) -> (Vec<[u32; 3]>, Vec<u32>) {
     (pixels.collect(), rendering.errors.iter().map(|e| e.to_bits()).collect())
 }
 
-/// Oracle: the portable arithmetic. Without the adaptive mode every pixel has one ray; with it, what is refined follows from the
-/// colours, so that a difference would spread.
+/// Oracle: the portable arithmetic. Without the adaptive mode every pixel has one ray; with it, what is refined follows
+/// from the colours, so that a difference would spread.
 #[test]
 fn pictures_are_the_same_by_all_instructions() {
     let model = concat!(env!("CARGO_MANIFEST_DIR"), "/models/crate/crate.obj");

@@ -30,8 +30,9 @@ pub(crate) struct RenderArgs {
     #[command(flatten)]
     pub(crate) seen: SceneArgs,
 
-    /// Picture to write: .png (8-bit sRGB), .exr (linear 32-bit floats, with the number of rays per pixel as a second layer),
-    /// .ppm (8-bit sRGB), or - for a PNG on standard output [default: the scene's name with .png, in the current folder]
+    /// Picture to write: .png (8-bit sRGB), .exr (linear 32-bit floats, with the number of rays per pixel as a second
+    /// layer), .ppm (8-bit sRGB), or - for a PNG on standard output [default: the scene's name with .png, in the
+    /// current folder]
     #[arg(short, long, value_name = "FILE", help_heading = "Picture")]
     pub(crate) output: Option<PathBuf>,
 
@@ -40,15 +41,15 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "WxH", value_parser = parse_sides, help_heading = "Picture")]
     pub(crate) size: Option<[u32; 2]>,
 
-    /// Anti-aliasing: none (one ray per pixel), grid:N (N x N rays per pixel), or adaptive[:ERROR[,MAX]] (rays where the
-    /// picture needs them, until a pixel's estimated error is below ERROR levels of 255 or it has MAX rays; 4 and 64 by
-    /// default) [default: adaptive]
+    /// Anti-aliasing: none (one ray per pixel), grid:N (N x N rays per pixel), or adaptive[:ERROR[,MAX]] (rays where
+    /// the picture needs them, until a pixel's estimated error is below ERROR levels of 255 or it has MAX rays; 4 and
+    /// 64 by default) [default: adaptive]
     #[arg(long, value_name = "MODE", help_heading = "Quality")]
     pub(crate) aa: Option<AntiAliasing>,
 
-    /// Estimated root-mean-square error of the picture to get below, in levels of 255; rays go where they reduce it most.
-    /// With --crop it is the error of the part, which then equals that part of the whole picture only if both end at the
-    /// same squared error per ray (it is reported); --aa adaptive:ERROR has no such catch
+    /// Estimated root-mean-square error of the picture to get below, in levels of 255; rays go where they reduce it
+    /// most. With --crop it is the error of the part, which then equals that part of the whole picture only if both end
+    /// at the same squared error per ray (it is reported); --aa adaptive:ERROR has no such catch
     #[arg(long, value_name = "E", value_parser = parse_error, allow_negative_numbers = true, help_heading = "Quality")]
     pub(crate) max_error: Option<f64>,
 
@@ -58,25 +59,26 @@ pub(crate) struct RenderArgs {
         allow_negative_numbers = true, help_heading = "Quality")]
     pub(crate) time_limit: Option<f64>,
 
-    /// Part of the picture to render, in pixels from the upper left, such as 100,50,200,80 (X1 and Y1 are the first outside);
-    /// its pixels equal those of the whole picture
+    /// Part of the picture to render, in pixels from the upper left, such as 100,50,200,80 (X1 and Y1 are the first
+    /// outside); its pixels equal those of the whole picture
     #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = parse_crop, allow_hyphen_values = true, help_heading = "Picture")]
     pub(crate) crop: Option<Tile>,
 
-    /// Share of the picture to render, the I-th of N equal ones counted from 1, for many machines. Several, such as 3/64,7/64,
-    /// are rendered one after another, with the scene read once. Each goes to a file of its own, called scene-3of64.png and
-    /// so on unless --output names it; with several tiles, -3of64 is inserted into that name. `whitted merge` joins them
+    /// Share of the picture to render, the I-th of N equal ones counted from 1, for many machines. Several, such as
+    /// 3/64,7/64, are rendered one after another, with the scene read once. Each goes to a file of its own, called
+    /// scene-3of64.png and so on unless --output names it; with several tiles, -3of64 is inserted into that name.
+    /// `whitted merge` joins them
     #[arg(long, value_name = "I/N[,I/N...]", value_parser = parse_shares, conflicts_with = "crop", help_heading = "Picture")]
     pub(crate) tile: Option<Shares>,
 
-    /// Go on from the checkpoint that an interrupted render of the same picture left beside the output, or from the beginning
-    /// if there is none. What is already finished is not rendered again
+    /// Go on from the checkpoint that an interrupted render of the same picture left beside the output, or from the
+    /// beginning if there is none. What is already finished is not rendered again
     #[arg(long, help_heading = "Long renders")]
     pub(crate) resume: bool,
 
-    /// Seconds between checkpoints. The file has the output's name with .checkpoint appended and is deleted when the picture
-    /// is finished; there is none for a picture on standard output. With --max-error or --time-limit the whole of it is
-    /// written each time, and at least 50 times as long as that takes passes between two
+    /// Seconds between checkpoints. The file has the output's name with .checkpoint appended and is deleted when the
+    /// picture is finished; there is none for a picture on standard output. With --max-error or --time-limit the whole
+    /// of it is written each time, and at least 50 times as long as that takes passes between two
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, default_value = "30",
         allow_negative_numbers = true, help_heading = "Long renders")]
     pub(crate) checkpoint: f64,
@@ -110,8 +112,8 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "MODE", value_enum, default_value_t, help_heading = "Messages")]
     pub(crate) progress: ProgressMode,
 
-    /// Show the picture while it is rendered, block by block: in a window if the program was built with the feature view and
-    /// there is a display, else in the terminal, two pixels per character, in 24-bit colours
+    /// Show the picture while it is rendered, block by block: in a window if the program was built with the feature
+    /// view and there is a display, else in the terminal, two pixels per character, in 24-bit colours
     #[arg(long, conflicts_with = "quiet", help_heading = "Messages")]
     pub(crate) preview: bool,
 

@@ -54,7 +54,8 @@ fn size() -> Option<[u32; 2]> {
     Some([u32::from(columns), u32::from(rows)])
 }
 
-/// The picture in letters, two pixels each, one above the other, as large as fits into so many columns and rows; and its rows.
+/// The picture in letters, two pixels each, one above the other, as large as fits into so many columns and rows; and
+/// its rows.
 fn half_blocks(film: &Film, [columns, rows]: [u32; 2]) -> (String, u32) {
     let (width, height) = (film.width().max(1), film.height().max(1));
     let shrink =

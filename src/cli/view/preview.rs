@@ -33,8 +33,8 @@ impl PreviewWindow {
         Some(Self { events: EventLoop::new().ok()?, is_closed: false })
     }
 
-    /// Shows the picture until its render has ended, or the user closes the window; the render goes on without it. To be called
-    /// from the thread that the program began with.
+    /// Shows the picture until its render has ended, or the user closes the window; the render goes on without it. To
+    /// be called from the thread that the program began with.
     pub(crate) fn show(&mut self, job: &Job, course: &Course) {
         if self.is_closed {
             return;

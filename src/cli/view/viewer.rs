@@ -137,8 +137,8 @@ impl Viewer {
         (plan != self.scene.camera_plan()).then(|| plan.camera().ok()).flatten()
     }
 
-    /// What is to be rendered, in a thread of its own, if that is not in work already. A picture whose first pass is not yet shown is not
-    /// given up, or there would be nothing to see while the mouse moves.
+    /// What is to be rendered, in a thread of its own, if that is not in work already. A picture whose first pass is
+    /// not yet shown is not given up, or there would be nothing to see while the mouse moves.
     pub(super) fn take_work(&mut self) -> Option<Work> {
         let is_first_shown = {
             let shown = self.canvas.look();
@@ -239,8 +239,8 @@ impl Work {
     }
 }
 
-/// How far the point is about which the camera turns: where the scene's camera looks at, unless that is but a direction, nearer than anything to be
-/// seen; then as far as the nearer things are.
+/// How far the point is about which the camera turns: where the scene's camera looks at, unless that is but a
+/// direction, nearer than anything to be seen; then as far as the nearer things are.
 fn distance(scene: &Scene) -> Option<f64> {
     let plan = scene.camera_plan();
     let view = plan.camera().ok()?.view(PROBES, PROBES);
@@ -307,8 +307,8 @@ mod tests {
         assert!(!viewer.act(Action::End).expect("the end"));
     }
 
-    /// Oracle: the spheres of the assignment stand between 60 and 100 in front of the camera, which looks at a point at 1; the camera of a model
-    /// looks at its middle.
+    /// Oracle: the spheres of the assignment stand between 60 and 100 in front of the camera, which looks at a point at
+    /// 1; the camera of a model looks at its middle.
     #[test]
     fn the_camera_turns_about_what_is_seen() {
         let moved = |flags: &[&str]| {

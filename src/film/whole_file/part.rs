@@ -1,6 +1,7 @@
 //! Temporary files on the way to their final names, and those that dead programs left behind.
 //!
-//! A temporary file is locked as long as the program that writes it lives; the system gives the lock back however that ends.
+//! A temporary file is locked as long as the program that writes it lives; the system gives the lock back however that
+//! ends.
 
 use std::fs::{self, File, TryLockError};
 use std::io;

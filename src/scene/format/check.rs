@@ -50,8 +50,8 @@ impl<'a> Checker<'a> {
         Faults { file: self.name.to_owned(), faults }
     }
 
-    /// Finds the faults; `exists` says whether a file that is named is there. If there are any, what is sound beside them is given
-    /// back.
+    /// Finds the faults; `exists` says whether a file that is named is there. If there are any, what is sound beside
+    /// them is given back.
     pub(super) fn check(&mut self, exists: &dyn Fn(&str) -> bool) -> Option<Sound> {
         let (root, _) = DeTable::parse_recoverable(&self.readable);
         let root = root.get_ref();

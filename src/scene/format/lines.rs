@@ -10,8 +10,8 @@ pub(super) type Found = (Range<usize>, String);
 /// The most lines that are left out.
 const MOST: usize = 50;
 
-/// The text as it can be read on: lines without `=`, and tables, that are no TOML and behind which nothing is read are blanks. And all
-/// that the parser found, in those lines and elsewhere.
+/// The text as it can be read on: lines without `=`, and tables, that are no TOML and behind which nothing is read are
+/// blanks. And all that the parser found, in those lines and elsewhere.
 pub(super) fn readable(text: &str) -> (Cow<'_, str>, Vec<Found>) {
     let mut readable = Cow::Borrowed(text);
     let mut found = Vec::new();
@@ -29,8 +29,8 @@ pub(super) fn readable(text: &str) -> (Cow<'_, str>, Vec<Found>) {
     (readable, found)
 }
 
-/// The text without the line of an error, or the table that it begins, and the error; if more than so many keys can be read then, or
-/// those of the table would be taken for others.
+/// The text without the line of an error, or the table that it begins, and the error; if more than so many keys can be
+/// read then, or those of the table would be taken for others.
 fn without_line(text: &str, error: &Error, keys_before: usize) -> Option<(String, Found)> {
     let start = text.get(..error.span()?.start)?.rfind('\n').map_or(0, |at| at + 1);
     let line = text[start..].lines().next()?;

@@ -79,8 +79,8 @@ impl<'a> SceneText<'a> {
     /// The parts of the scene; `images` and `models` find what it names.
     ///
     /// # Errors
-    /// All that is wrong with it: unknown, missing and mistyped keys, values out of range, undefined names, shapes without
-    /// size, files that cannot be used.
+    /// All that is wrong with it: unknown, missing and mistyped keys, values out of range, undefined names, shapes
+    /// without size, files that cannot be used.
     pub fn parts(
         mut self,
         images: &mut ImageSource,

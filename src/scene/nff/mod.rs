@@ -79,7 +79,8 @@ pub struct NffScene {
     pub warnings: Vec<Warning>,
 }
 
-/// Reads a scene; its field of view reaches to the centres of the outermost of `rows` pixel rows, or as many as the file says.
+/// Reads a scene; its field of view reaches to the centres of the outermost of `rows` pixel rows, or as many as the
+/// file says.
 ///
 /// # Errors
 /// The file cannot be read, or an entity in it cannot be right.

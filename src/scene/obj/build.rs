@@ -200,7 +200,8 @@ impl<'a> Builder<'a> {
         (0..obj.len()).into_par_iter().map(|face| kept[face] && lacks(face)).collect()
     }
 
-    /// The mesh of triangles of corners: corners that agree in position, surface coordinates and normal become one vertex.
+    /// The mesh of triangles of corners: corners that agree in position, surface coordinates and normal become one
+    /// vertex.
     fn mesh(self, mut triangles: Vec<[u32; 3]>) -> Result<Mesh, ModelError> {
         let mut obj = self.obj;
         (obj.ends, obj.lines) = (Vec::new(), Vec::new());

@@ -7,8 +7,8 @@ use std::{
 
 use crate::scene::text::name_of;
 
-/// The file that `name` means in a file of the folder `base`: the path as it is, then with its letters in any case, then
-/// its last part alone beside the file.
+/// The file that `name` means in a file of the folder `base`: the path as it is, then with its letters in any case,
+/// then its last part alone beside the file.
 pub(crate) fn find(base: &Path, name: &str) -> Option<PathBuf> {
     if name.is_empty() || name.contains('\0') {
         return None;

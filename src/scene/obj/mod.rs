@@ -1,9 +1,9 @@
 //! Models in OBJ files with MTL materials, as they really are.
 //!
-//! The file is read by a reader of its own, in one pass over the bytes, rather than by `tobj` behind a cleaning pass: what
-//! has to be cleaned (byte-order marks, continuations, comments, encodings, number spellings) takes a full tokenizer, and
-//! what has to be known afterwards (the line of every face, smoothing groups, normals that are missing face by face)
-//! does not survive `tobj`. `benches/load.rs` measures both.
+//! The file is read by a reader of its own, in one pass over the bytes, rather than by `tobj` behind a cleaning pass:
+//! what has to be cleaned (byte-order marks, continuations, comments, encodings, number spellings) takes a full
+//! tokenizer, and what has to be known afterwards (the line of every face, smoothing groups, normals that are missing
+//! face by face) does not survive `tobj`. `benches/load.rs` measures both.
 
 mod build;
 mod closed;

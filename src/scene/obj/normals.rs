@@ -179,7 +179,8 @@ struct Ring {
 const CROWD: usize = 24;
 
 impl Ring {
-    /// Makes the normals of the `corners` that lack one, puts them after `normals`, and their numbers in place of the faces.
+    /// Makes the normals of the `corners` that lack one, puts them after `normals`, and their numbers in place of the
+    /// faces.
     fn complete(&mut self, sight: &Sight, corners: &mut [[u32; 2]], normals: &mut Vec<Vec3>) {
         let lacks = |corner: u32| sight.obj.lacks_normal(corner as usize);
         if !corners.iter().any(|[_, corner]| lacks(*corner)) {

@@ -13,7 +13,8 @@ use crate::scene::text::{Lines, Tokens, float, integer, name_of};
 /// The most corners of one polygon; cutting a larger one into triangles could take minutes.
 const MOST_CORNERS: usize = 10_000;
 
-/// What holds from a face on, as far as its part of the file says it; what it does not say goes on from the part before.
+/// What holds from a face on, as far as its part of the file says it; what it does not say goes on from the part
+/// before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Said {
     /// The face, counted from the first of the part.

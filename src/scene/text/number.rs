@@ -6,8 +6,8 @@ const EXACT_POWERS: [f64; 23] = [
     1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
 ];
 
-/// The double nearest to the number that all of `token` spells, as `strtod` does: decimal or hexadecimal, with or without
-/// digits before or after the point, infinities and NaN included.
+/// The double nearest to the number that all of `token` spells, as `strtod` does: decimal or hexadecimal, with or
+/// without digits before or after the point, infinities and NaN included.
 pub fn float(token: &[u8]) -> Option<f64> {
     plain(token).or_else(|| any(token))
 }
