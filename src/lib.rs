@@ -2,15 +2,21 @@
 //!
 //! # The path of a ray
 //!
-//! [`render::render`] hands [tiles](film::Tile) of the film to its workers. In a tile, [`aa::AntiAliasing`] picks
-//! places on the film and [`camera::View`] makes each a [`geometry::Ray`]. [`accel::Accel`] finds the primitive it
-//! meets first: it skips what the ray passes by boxes in single precision, made a little too large, and asks the
-//! [`geometry::Shape`]s that are left in double precision. The winner's [`geometry::Surface`] (point, normal, error
-//! bound) and its [`material::Material`], coloured by a [`texture::Texture`], say how light leaves it; rays towards
-//! every [`light::Light`] ask what stands between; and reflected and refracted rays, each knowing the surface it
-//! leaves, join the work list of [`trace::Tracer`]. What comes back is averaged over the pixel in linear light, put on
-//! the [`film::Film`] and encoded at the very end. Pictures are rendered block by block, and a [`checkpoint`] keeps the
-//! finished ones of a render that is stopped.
+//! [`render::render`] calls [`render::render_blocks`], which cuts the picture into [blocks](render::blocks) and renders
+//! each by itself. In a block, [`aa::AntiAliasing`] says which places on the film are asked for their colour, and a
+//! [`render::Sampler`] (for a scene the `Worker` of its module) answers for up to 64 of them at once:
+//! [`camera::View::direction`] turns each place into the direction of a camera ray, and `trace` of [`trace::Tracer`]
+//! follows these rays together.
+//!
+//! [`accel::Accel`] finds the primitive that each ray meets first: boxes in single precision, made a little too large,
+//! rule out most of them, and the [`geometry::Shape`]s that are left are asked in double precision. The
+//! [`geometry::Surface`] that is hit (point, normal, error bound) and its [`material::Material`], coloured by a
+//! [`texture::Texture`], say how light leaves it. Rays towards every [`light::Light`] ask what stands between, and
+//! reflected and refracted rays, each knowing the surface it leaves, join the tracer's work list.
+//!
+//! What comes back is an [`aa::Sample`]. The samples of a pixel are averaged in linear light, the finished
+//! [`render::Block`] is copied to the film ([`film::Film::blit`]), and the film is encoded at the very end. A
+//! [`checkpoint`] keeps the finished blocks of a render that is stopped.
 //!
 //! A [`scene::Scene`] is made from a [`scene::SceneDesc`], which is plain data, read from TOML.
 //!

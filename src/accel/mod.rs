@@ -96,6 +96,9 @@ pub struct Accel {
 
 impl Accel {
     /// Arranges `shapes`; a primitive's number is its place in them.
+    ///
+    /// The tree holds at most 2²⁷ − 2 primitives. Of more, none is put into it, and every ray tests all of them: the
+    /// answers are the same, but slow.
     pub fn build(shapes: Vec<Shape>) -> Self {
         Self::with_preset(shapes, Preset::Auto)
     }
@@ -258,8 +261,8 @@ impl Accel {
         self.is_blocked(ray, end, |_| false, visit)
     }
 
-    /// Whether a primitive that is `opaque` is crossed with `0 < t < end`, or `visit(primitive, crossing)` breaks,
-    /// which is called for crossings of the others, in no order, until the answer is known.
+    /// Whether the ray is stopped before `end`: by crossing a primitive for which `opaque` is true, or because `visit`,
+    /// called for crossings of the others in no particular order, breaks.
     pub fn is_blocked(
         &self,
         ray: &Ray,

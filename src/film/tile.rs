@@ -1,4 +1,4 @@
-//! Tiles: the shares of a picture that workers take one after another.
+//! Rectangles of pixels: parts and blocks of a picture, and the tiles of a block that workers take one after another.
 
 /// A rectangle of pixels, half open: columns `x0..x1`, rows `y0..y1`, from 0 at the top left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -22,9 +22,7 @@
 //!
 //! n = (sin a cos t, sin t, cos a cos t), with sin a = x/ρ, cos a = z/ρ, ρ = √(x² + z²),
 //!
-//! that is (h x, R ρ, h z) normalised. The report that this program started from writes sin a in both the first and
-//! the last component of its code; then n is not a unit vector and does not turn with the point. At the apex, where
-//! there is no normal, the axis is taken.
+//! that is (h x, R ρ, h z) normalised. At the apex, where there is no normal, the axis is taken.
 
 use glam::DVec3;
 

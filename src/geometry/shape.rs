@@ -12,7 +12,7 @@ use super::{
     triangle,
 };
 
-/// A surface that a ray can meet. All but the sphere are boxed, so that a million spheres stay small.
+/// A surface that a ray can meet. The larger shapes are boxed, so that a million spheres or faces of a mesh stay small.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Shape {

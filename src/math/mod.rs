@@ -1,4 +1,5 @@
-//! Numbers: compensated sums of products, roots of quadratics, orthonormal frames, random numbers.
+//! Numbers: compensated sums of products, roots of quadratics, orthonormal frames, random numbers, scaling by powers of
+//! two.
 
 pub mod compensated;
 pub mod frame;

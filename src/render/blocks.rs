@@ -78,7 +78,10 @@ pub trait Sink: Sync {
     /// colours and the rays through each pixel.
     fn show(&self, _place: &Tile, _colors: &[Rgb], _samples: &[u32]) {}
 
-    /// Whether a picture towards an error or until a time is to be kept as it is now. Once it is asked for, until then.
+    /// Whether a picture towards an error or until a time is to be kept as it is now.
+    ///
+    /// The sink makes it true when it wants to keep the picture, as for a checkpoint. The render then pauses soon and
+    /// calls [`Sink::keep`], in which the sink makes it false again.
     fn wants_unfinished(&self) -> bool {
         false
     }

@@ -1,4 +1,4 @@
-//! From a scene to a film: tiles in parallel, each a function of scene and options alone.
+//! From a scene to a film: blocks in parallel, each a function of scene and options alone.
 
 mod adaptive;
 mod blocks;
@@ -186,7 +186,7 @@ pub enum RenderError {
     },
 }
 
-/// Renders `scene`; `progress` is called from the worker threads after every tile.
+/// Renders `scene`; `progress` is called from the worker threads, again and again.
 ///
 /// The picture depends on the scene and the options alone, and not on the number of threads: it is the same, byte for byte,
 /// every time, but for [`Goal::Until`].
@@ -218,7 +218,7 @@ pub struct Effort {
 /// The part of the picture that is wanted.
 ///
 /// # Errors
-/// It is empty, or not in the picture.
+/// [`RenderError::Crop`] if it is empty or not in the picture.
 pub fn part(scene: &Scene, options: &RenderOptions) -> Result<Tile, RenderError> {
     let [width, height] = options.size.unwrap_or(scene.resolution());
     let part = options.crop.unwrap_or(Tile { x0: 0, y0: 0, x1: width, y1: height });
@@ -230,7 +230,8 @@ pub fn part(scene: &Scene, options: &RenderOptions) -> Result<Tile, RenderError>
 
 /// Renders the [`blocks`] of a picture of `scene` that `sink` wants, and hands them to it.
 ///
-/// Each block is the same whichever others are rendered, in whatever order and by however many threads.
+/// Each block is the same whichever others are rendered, in whatever order and by however many threads, unless the goal
+/// is [`Goal::Until`]: then it depends on the clock.
 ///
 /// # Errors
 /// Those of [`render`].

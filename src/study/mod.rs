@@ -106,9 +106,9 @@ pub struct Study {
 pub struct Step {
     /// What comes next.
     pub what: String,
-    /// The work done, and that in all.
+    /// The rays that what is done took, as estimated.
     pub done: f64,
-    /// The whole work.
+    /// The rays that the whole study takes, as estimated.
     pub total: f64,
 }
 

@@ -18,7 +18,7 @@ use crate::{color::Rgb, geometry::Similarity};
 pub struct TexturePoint {
     /// The surface coordinates, from the lower left.
     pub uv: DVec2,
-    /// The place in the scene.
+    /// The point, in the coordinates of what holds the texture: in a [`Scene`](crate::scene::Scene), the scene's own.
     pub point: DVec3,
 }
 

@@ -36,7 +36,7 @@ const FEWEST: u32 = 8;
 /// Fewer lanes than this are as fast one by one where a primitive is tried.
 const FEWEST_LANES: u32 = 3;
 
-/// A wider beam, at distance 1 in units of half the scene, meets too much that no ray of it does.
+/// A wider beam, at distance 1 in units of half the scene, enters too many nodes that none of its rays would.
 const WIDEST: f32 = 0.25;
 
 /// The limit of a lane that is not in use, or whose ray passes the tree by.
