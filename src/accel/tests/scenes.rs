@@ -1,8 +1,12 @@
 //! Random shapes and awkward scenes.
 
-use glam::DVec3;
+use std::sync::Arc;
 
-use crate::geometry::{Cone, Cylinder, Ends, Inward, Polygon, Quad, Shape, Sphere, Triangle};
+use glam::{DVec3, Vec3};
+
+use crate::geometry::{
+    Cone, Cylinder, Ends, Inward, Mesh, Polygon, Quad, Shape, Sphere, Triangle, mesh::Attributes,
+};
 
 /// SplitMix64.
 pub(super) struct Random(pub(super) u64);
@@ -41,7 +45,7 @@ impl Random {
     }
 }
 
-pub(super) const KINDS: usize = 8;
+pub(super) const KINDS: usize = 10;
 
 pub(super) fn sphere(center: DVec3, radius: f64) -> Shape {
     Sphere::try_new(center, radius).expect("valid").into()
@@ -53,6 +57,13 @@ pub(super) fn triangle(corners: [DVec3; 3]) -> Shape {
 
 pub(super) fn quad(corner: DVec3, e1: DVec3, e2: DVec3) -> Shape {
     Quad::try_new(corner, e1, e2).expect("valid").into()
+}
+
+/// The faces of a mesh, which bend the light if vertices have `normals`.
+fn faces(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>, normals: Vec<Vec3>) -> Vec<Shape> {
+    let attributes = Attributes { normals, ..Attributes::default() };
+    let mesh = Mesh::try_new(vertices, triangles, attributes).expect("valid");
+    Arc::new(mesh).faces().map(Shape::from).collect()
 }
 
 /// A shape of about `size` at `center`.
@@ -75,6 +86,12 @@ pub(super) fn shape_of(kind: usize, center: DVec3, size: f64, random: &mut Rando
             .map(Shape::from),
         // Slivers.
         6 => return triangle([center, center + a, center + a * 0.5 + b * 1e-6]),
+        // The second face of a mesh, flat or smooth.
+        7 | 8 => {
+            let vertices = vec![center, center + a, center + b, center - a];
+            let normals = if kind == 7 { vec![] } else { vec![Vec3::Y, Vec3::X, Vec3::Z, Vec3::X] };
+            return faces(vertices, vec![[0, 2, 3], [2, 0, 1]], normals).remove(1);
+        }
         _ => return Inward::new(shape_of(3 * random.below(2), center, size, random)).into(),
     };
     shape.expect("valid")
@@ -92,6 +109,14 @@ pub(super) fn awkward() -> Vec<(&'static str, Vec<Shape>)> {
             triangle([p, p + at(0.1, 0.1, 0.0), p + DVec3::Y * 0.1]),
         ]
     };
+    // Ten squares by ten, which share their corners by index.
+    let indexed = |normals: Vec<Vec3>| {
+        let corner = |k: u32| at(f64::from(k % 11) * 0.1, f64::from(k / 11) * 0.1, 0.0);
+        let corners = (0..10).flat_map(|j| (0..10).map(move |i| 11 * j + i));
+        let halves = corners.flat_map(|k| [[k, k + 1, k + 12], [k, k + 12, k + 11]]);
+        faces((0..121).map(corner).collect(), halves.collect(), normals)
+    };
+    let normal = |k: usize| Vec3::new((k as f32).sin(), (k as f32).cos(), 1.0).normalize();
     vec![
         ("identical spheres", vec![sphere(at(1.0, 2.0, 3.0), 0.5); 200]),
         ("identical triangles", vec![triangle([DVec3::X, DVec3::Y, DVec3::Z]); 200]),
@@ -106,6 +131,8 @@ pub(super) fn awkward() -> Vec<(&'static str, Vec<Shape>)> {
         ),
         ("flat grid of squares", (0..100).map(|k| square(grid(k))).collect()),
         ("flat mesh", (0..100).flat_map(mesh).collect()),
+        ("indexed mesh", indexed(vec![])),
+        ("indexed smooth mesh", indexed((0..121).map(normal).collect())),
         ("row", (0..500).map(|k| sphere(at(f64::from(k), 0.0, 0.0), 0.4)).collect()),
         (
             "one point",
