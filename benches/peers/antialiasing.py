@@ -9,23 +9,26 @@ Needs cargo, Debian's package povray, and Python's numpy and pillow. Each progra
 programs' own trace times. Written: antialiasing.csv, antialiasing.md: for each point of POV-Ray's front, the time in which whitted
 reaches the same error, by straight lines between its own points in logarithms of both.
 """
-import argparse, csv, json, math, os, re, statistics, subprocess, sys, tempfile
+import argparse, csv, json, math, os, re, shutil, statistics, subprocess, sys, tempfile
 
-import numpy
-from PIL import Image
+from common import HERE, ROOT, build, folder, whole
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-ROOT = os.path.dirname(os.path.dirname(HERE))
 SIDE, FINE = 600, 12
 ERRORS = ['32', '24', '16', '12', '8', '6', '4', '3', '2', '1', '0.5']
 THRESHOLDS = ['0.5', '0.3', '0.1', '0.05', '0.02', '0.0']
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-parser.add_argument('--rounds', type=int, default=3)
-parser.add_argument('--threads', type=int, default=1)
-parser.add_argument('--out', default='.', help='folder for antialiasing.csv and antialiasing.md')
+parser.add_argument('--rounds', type=whole, default=3)
+parser.add_argument('--threads', type=whole, default=1)
+parser.add_argument('--out', type=folder, default='.', help='folder for antialiasing.csv and antialiasing.md')
 options = parser.parse_args()
-os.makedirs(options.out, exist_ok=True)  # now, not after all is measured
+try:
+    import numpy
+    from PIL import Image
+except ImportError as missing:
+    parser.error({'PIL': 'pillow'}.get(missing.name, missing.name) + ' is not installed')
+if not shutil.which('povray'):
+    parser.error('povray is not installed')
 Image.MAX_IMAGE_PIXELS = None
 
 
@@ -36,11 +39,11 @@ def run(command, **kw):
     return done.stdout.replace('\r', '\n')
 
 
-def ours(work, mode):
+def ours(program, work, mode):
     """The trace time of whitted in an anti-aliasing mode, and its picture."""
     picture = os.path.join(work, 'ours.png')
-    text = run([os.path.join(ROOT, 'target/release/whitted'), 'render', 'assignment', '--aa', mode, '--threads', str(options.threads),
-                '--quiet', '--stats', '-', '-o', picture])
+    text = run([program, 'render', 'assignment', '--aa', mode, '--threads', str(options.threads), '--quiet', '--stats', '-',
+                '-o', picture])
     return json.loads(text)['seconds']['render'], picture
 
 
@@ -85,18 +88,18 @@ def time_for(error, points):
 
 
 def main():
-    run(['cargo', 'build', '--release'], cwd=ROOT)
+    whitted = build(parser, '--bin', 'whitted')['whitted']
     modes = [('whitted', f'adaptive:{error}') for error in ERRORS] + [('whitted', 'none')]
     modes += [('povray', f'+A{threshold} +AM{method} +R{depth}')
               for method in (1, 2) for depth in (2, 3, 4) for threshold in THRESHOLDS] + [('povray', '-A')]
     with tempfile.TemporaryDirectory(prefix='antialiasing-') as work:
-        converged = {'whitted': levels(ours(work, 'grid:16')[1]),
+        converged = {'whitted': levels(ours(whitted, work, 'grid:16')[1]),
                      'povray': averaged(povray(work, '-A', side=SIDE * FINE)[1])}
         seconds, errors = {}, {}
         for number in range(options.rounds):
             for key in modes:
                 program, mode = key
-                time, picture = ours(work, mode) if program == 'whitted' else povray(work, *mode.split())
+                time, picture = ours(whitted, work, mode) if program == 'whitted' else povray(work, *mode.split())
                 seconds.setdefault(key, []).append(time)
                 if number == 0:
                     errors[key] = math.sqrt(((levels(picture) - converged[program]) ** 2).mean())

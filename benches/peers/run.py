@@ -5,28 +5,27 @@
 
 Needs cargo, and for the peers Debian's packages povray, libembree-dev and g++ and Python's numpy; a peer that is not there is left
 out and said. Every measurement is a process of its own; round 1 measures every task once, then comes round 2, so that a change
-of the machine's mood hits all alike. The tables give medians, and ratios of medians. Written: peers.csv, peers.md, and frames.svg, which
-plots the trace times of the sphere scenes for the largest of the numbers of threads.
+of the machine's mood hits all alike. The tables give medians, and ratios of medians, and say where whitted and Embree differ in how many
+of the same rays hit. Written: peers.csv, peers.md, and frames.svg, which plots the trace times of the sphere scenes for the largest of
+the numbers of threads.
 """
-import argparse, csv, json, os, re, shutil, statistics, subprocess, sys, tempfile
+import argparse, csv, importlib.util, json, os, re, shutil, statistics, subprocess, sys, tempfile
 
 import chart
+from common import HERE, ROOT, build, folder, mesh, objects, pattern, whole
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-ROOT = os.path.dirname(os.path.dirname(HERE))
 TEXTURES = os.path.join(ROOT, 'textures')
 EMBREE = 'libembree3.so.3'
 ADAPTIVE = 'adaptive:16'  # about the error of grid:2 on the sphere scenes
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-parser.add_argument('--rounds', type=int, default=5)
-parser.add_argument('--only', type=re.compile, default=re.compile('.'), help='tasks whose name matches')
-parser.add_argument('--objects', nargs='*', default=['1e3', '1e4', '1e5', '1e6'], help='sphere counts')
-parser.add_argument('--meshes', nargs='*', default=['icos:1000:3'], help='icos:N:LEVEL or obj:FILE, for the ray queries')
-parser.add_argument('--threads', nargs='*', type=int, default=[1, 2])
-parser.add_argument('--out', default='.', help='folder for peers.csv and peers.md')
+parser.add_argument('--rounds', type=whole, default=5)
+parser.add_argument('--only', type=pattern, default='.', help='tasks whose name matches', metavar='REGEX')
+parser.add_argument('--objects', nargs='*', type=objects, default=['1e3', '1e4', '1e5', '1e6'], help='sphere counts', metavar='N')
+parser.add_argument('--meshes', nargs='*', type=mesh, default=['icos:1000:3'], help='icos:N:LEVEL or obj:FILE, for the ray queries')
+parser.add_argument('--threads', nargs='+', type=whole, default=[1, 2], metavar='N')
+parser.add_argument('--out', type=folder, default='.', help='folder for peers.csv, peers.md and frames.svg')
 options = parser.parse_args()
-os.makedirs(options.out, exist_ok=True)  # now, not after all is measured
 
 
 def run(command, **kw):
@@ -38,8 +37,8 @@ def run(command, **kw):
     return done.stdout.replace('\r', '\n')
 
 
-def ours(work, scene, mode, threads):
-    command = [os.path.join(ROOT, 'target/release/whitted'), 'render', scene[0], '--threads', str(threads), '--quiet', '--stats', '-',
+def ours(program, work, scene, mode, threads):
+    command = [program, 'render', scene[0], '--threads', str(threads), '--quiet', '--stats', '-',
                '--aa', mode, '--output', os.path.join(work, 'ours.png'), *scene[1:]]
 
     def measure():
@@ -92,43 +91,74 @@ def queries(command):
 
 def prepare(work):
     """The tasks as (group, program, measure), the first program of a group being ours."""
-    if run(['cargo', 'build', '--release', '--example', 'raybench', '--bin', 'whitted'], cwd=ROOT) is None:
-        sys.exit('whitted does not build')
-    have_povray, have_embree = shutil.which('povray'), None
+    built = build(parser, '--example', 'raybench', '--bin', 'whitted')
+    have_povray, have_embree = shutil.which('povray') is not None, False
+    have_spheres = have_povray and importlib.util.find_spec('numpy') is not None
     if shutil.which('g++'):
         raybench = os.path.join(work, 'raybench')
-        have_embree = run(['g++', '-O3', '-march=native', '-std=c++17', os.path.join(HERE, 'raybench.cpp'), '-ldl', '-o', raybench])
+        command = ['g++', '-O3', '-march=native', '-std=c++17', os.path.join(HERE, 'raybench.cpp'), '-ldl', '-o', raybench]
+        have_embree = run(command) is not None
     for name, have in (('povray', have_povray), ('embree', have_embree)):
-        if have is None:
+        if not have:
             print(f'{name} is left out: not installed', file=sys.stderr)
+    if have_povray and not have_spheres:
+        print('the sphere scenes of povray are left out: numpy, which writes them, is not installed', file=sys.stderr)
     tasks = []
     for threads in options.threads:
         for rays, mode in ((1, 'none'), (4, 'grid:2')):
+            def add_ours(group, scene, mode):
+                tasks.append((group, 'whitted', ours(built['whitted'], work, scene, mode, threads)))
+
+            def add_povray(group, scene):
+                tasks.append((group, 'povray', povray(work, scene, rays, threads)))
+
             group = f'assignment, {rays} rays per pixel, {threads} threads'
-            tasks.append((group, 'whitted', ours(work, ['assignment'], mode, threads)))
+            add_ours(group, ['assignment'], mode)
             if have_povray:
-                tasks.append((group, 'povray', povray(work, os.path.join(HERE, 'assignment.pov'), rays, threads)))
+                add_povray(group, os.path.join(HERE, 'assignment.pov'))
             for count in options.objects:
                 group = f'spheres {count}, {rays} rays per pixel, {threads} threads'
                 spheres = ['spheres', '--objects', str(int(float(count)))]
-                tasks.append((group, 'whitted', ours(work, spheres, mode, threads)))
+                add_ours(group, spheres, mode)
                 if rays == 4:
-                    group_of_adaptive = f'spheres {count}, {ADAPTIVE}, {threads} threads'
-                    tasks.append((group_of_adaptive, 'whitted', ours(work, spheres, ADAPTIVE, threads)))
-                if have_povray:
-                    scene = os.path.join(work, f'{count}.pov')
-                    tasks.append((group, 'povray', povray(work, scene, rays, threads)))
-    own = os.path.join(ROOT, 'target/release/examples/raybench')
+                    add_ours(f'spheres {count}, {ADAPTIVE}, {threads} threads', spheres, ADAPTIVE)
+                if have_spheres:
+                    add_povray(group, os.path.join(work, f'{count}.pov'))
     for what in [f'spheres:{count}' for count in options.objects] + options.meshes:
-        tasks.append((f'queries {what}', 'whitted', queries([own, what, '3'])))
-        if have_embree is not None:
+        tasks.append((f'queries {what}', 'whitted', queries([built['raybench'], what, '3'])))
+        if have_embree:
             quality = 'medium' if what.startswith('spheres') else 'medium-robust'
             tasks.append((f'queries {what}', 'embree', queries([raybench, EMBREE, what, quality, '3'])))
+    groups = dict.fromkeys(group for group, _, _ in tasks)
     tasks = [task for task in tasks if options.only.search(task[0])]
+    if not tasks:
+        parser.error(f"argument --only: '{options.only.pattern}' matches none of\n  " + '\n  '.join(groups))
     for count in options.objects:
-        if have_povray and any(f'spheres {count},' in group for group, _, _ in tasks):
-            run([sys.executable, os.path.join(HERE, 'stress.py'), 'pov', count, os.path.join(work, f'{count}.pov')])
+        if any(group.startswith(f'spheres {count},') and program == 'povray' for group, program, _ in tasks):
+            command = [sys.executable, os.path.join(HERE, 'stress.py'), 'pov', count, os.path.join(work, f'{count}.pov')]
+            if run(command) is None:
+                sys.exit(f'the scene of {count} spheres cannot be written for povray')
     return tasks
+
+
+def theirs(measure):
+    """What Embree calls a measure: our tiles of 64 rays against its packets of 16, both told that the rays are coherent."""
+    return measure.replace('camera_coherent', 'camera_intersect16_coherent')
+
+
+def differing_hits(median):
+    """A line for each kind of rays of which one in 100,000 or more hits with one program only, although the rays are the same."""
+    for (group, program, measure), ours in median.items():
+        others = median.get((group, 'embree', theirs(measure)))
+        if program != 'whitted' or not measure.startswith('hits ') or others is None:
+            continue
+        what = measure.removeprefix('hits ')
+        # Shadow rays start at the camera's hits; a build hits all primitives.
+        of_camera = median.get((group, 'whitted', 'hits camera_intersect1'), 0)
+        rays = 360_000 if 'camera' in what else of_camera if 'shadow' in what else 1_000_000 if 'random' in what else 0
+        if abs(ours - others) > 1e-5 * rays:
+            place, of = group.removeprefix('queries '), f' of {rays:,.0f}' if rays else ''
+            yield f'Hits differ: {place}, {what}: whitted {ours:,.0f}, Embree {others:,.0f}{of}.'
 
 
 def write(rows):
@@ -149,11 +179,10 @@ def write(rows):
         f.write('\n| ray queries, one thread | measure | whitted | Embree | ratio |\n| --- | --- | --- | --- | --- |\n')
         for group, program, measure in rows:
             if program == 'whitted' and '[' in measure:
-                # Our tiles of 64 rays against its packets of 16, both told that the rays are coherent.
-                theirs = measure.replace('camera_coherent', 'camera_intersect16_coherent')
-                a, b = median[group, program, measure], median.get((group, 'embree', theirs))
+                a, b = median[group, program, measure], median.get((group, 'embree', theirs(measure)))
                 ratio = '-' if not b else f'{a / b:.2f}' if 'Mrays' in measure else f'{b / a:.2f}'
                 f.write(f'| {group.removeprefix("queries ")} | {measure} | {a:.4g} | ' + (f'{b:.4g}' if b else '-') + f' | {ratio} |\n')
+        f.writelines(f'\n{line}\n' for line in differing_hits(median))
     frames = {}
     for (group, program, measure), value in median.items():
         found = re.fullmatch(rf'spheres (\S+), (.*), {max(options.threads)} threads', group)

@@ -1,7 +1,7 @@
 """stress.py - the sphere stress scene of docs/stress.md.
 
     python3 stress.py pov     N OUT.pov       POV-Ray 3.7 scene
-    python3 stress.py mitsuba N OUT.xml       Mitsuba 3 scene (see README.md for what differs)
+    python3 stress.py mitsuba N OUT.xml       Mitsuba 3 scene (its own light transport, so pictures differ)
     python3 stress.py raw     N OUT.bin       N records x, y, z (float32 LE), then N bytes of material
     python3 stress.py check   N               checksums, to verify another generator
 
