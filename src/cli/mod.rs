@@ -22,6 +22,7 @@ mod stats;
 mod streams;
 mod study;
 mod target;
+mod threads;
 mod view;
 mod watch;
 
@@ -37,17 +38,7 @@ use failure::Failure;
 pub(crate) fn run() -> ExitCode {
     let started = Instant::now();
     let done = match Args::try_parse() {
-        Ok(args) => match &args.command {
-            Command::Render(args) => render::run(args, started),
-            Command::Compare(args) => compare::run(args),
-            Command::Study(args) => study::run(args),
-            Command::Inspect(args) => inspect::run(args),
-            Command::Merge(args) => merge::run(args),
-            Command::Scenes(args) => scenes::run(args),
-            Command::View(args) => view::run(args),
-            Command::Completions(args) => completions::run(args),
-            Command::Man(args) => man::run(args),
-        },
+        Ok(args) => perform(&args.command, started),
         Err(error) if error.use_stderr() => Err(Failure::from_clap(&error)),
         Err(help_or_version) => streams::write_stdout(help_or_version.to_string().as_bytes()),
     };
@@ -57,5 +48,20 @@ pub(crate) fn run() -> ExitCode {
             streams::note(&failure.line());
             failure.exit_code()
         }
+    }
+}
+
+fn perform(command: &Command, started: Instant) -> Result<(), Failure> {
+    threads::limit(command.threads())?;
+    match command {
+        Command::Render(args) => render::run(args, started),
+        Command::Compare(args) => compare::run(args),
+        Command::Study(args) => study::run(args),
+        Command::Inspect(args) => inspect::run(args),
+        Command::Merge(args) => merge::run(args),
+        Command::Scenes(args) => scenes::run(args),
+        Command::View(args) => view::run(args),
+        Command::Completions(args) => completions::run(args),
+        Command::Man(args) => man::run(args),
     }
 }

@@ -3,7 +3,7 @@
 use std::fs;
 
 use super::{assert_picture, assert_refused, render};
-use crate::program::{done, folder, names_in, read, run, said};
+use crate::program::{done, folder, names_in, read, run, said, whitted};
 
 #[test]
 fn render_writes_the_scene_under_its_name_and_says_so() {
@@ -60,4 +60,34 @@ fn a_render_does_not_depend_on_its_threads() {
     }
     let [one, three] = ["1.png", "3.png"].map(|name| fs::read(folder.path().join(name)));
     assert_eq!(one.expect("readable"), three.expect("readable"));
+}
+
+/// Oracle: the threads that the system counts while a scene is built and rendered and a file compressed, on what seems to be a
+/// machine of 64 cores.
+#[cfg(target_os = "linux")]
+#[test]
+fn no_more_threads_work_than_are_wanted() {
+    let folder = folder();
+    let arguments = [
+        "render",
+        "spheres",
+        "--objects",
+        "20000",
+        "--size",
+        "64x48",
+        "--threads",
+        "2",
+        "-o",
+        "a.exr",
+    ];
+    let mut program = whitted(folder.path(), &arguments);
+    let mut program = program.env("RAYON_NUM_THREADS", "64").spawn().expect("the program runs");
+    let (tasks, mut most) = (format!("/proc/{}/task", program.id()), 0);
+    while program.try_wait().expect("it runs").is_none() {
+        // Nobody to count, if it ends just now.
+        most = most.max(fs::read_dir(&tasks).map_or(0, Iterator::count));
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    assert!(program.wait().expect("it ended").success());
+    assert!((3..32).contains(&most), "{most} threads");
 }

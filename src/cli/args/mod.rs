@@ -66,6 +66,18 @@ pub(crate) enum Command {
     Man(ManArgs),
 }
 
+impl Command {
+    /// How many threads the user wants to work.
+    pub(crate) fn threads(&self) -> Option<NonZeroUsize> {
+        match self {
+            Self::Render(args) => args.threads,
+            Self::Study(args) => args.threads,
+            Self::View(args) => args.threads,
+            _ => None,
+        }
+    }
+}
+
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Examples:
