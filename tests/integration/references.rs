@@ -1,4 +1,4 @@
-//! The assignment scene against pictures and ray counts of independent programs.
+//! The assignment scene and the spheres against pictures and ray counts of independent programs.
 
 use std::path::Path;
 
@@ -94,4 +94,17 @@ fn level_six_is_the_deepest() {
     let differing =
         five.film.pixels().iter().zip(six.film.pixels()).filter(|(a, b)| a != b).count();
     assert!((1..=20).contains(&differing), "{differing} pixels");
+}
+
+/// Oracle: the published counts, which a program that tests every sphere with every ray meets as closely.
+#[test]
+fn a_thousand_spheres() {
+    let scene = load_builtin("spheres").expect("a built-in scene");
+    let options = RenderOptions { aa: AntiAliasing::None, ..Default::default() };
+    let rays = rendering(&scene, &options).rays;
+    let traced = rays.camera + rays.reflected + rays.refracted + rays.transmitted;
+    for (count, published) in [(traced, 439_835), (rays.shadow, 593_798_u64)] {
+        let off = count.abs_diff(published);
+        assert!(off * 100_000 <= published, "{count} instead of {published}");
+    }
 }
