@@ -2,7 +2,10 @@
 
 use std::fs;
 
+use anyhow::anyhow;
 use whitted::film::Film;
+
+use super::failure::Failure;
 
 /// The most memory a picture may need; a larger size is taken for a slip of the finger.
 pub(crate) const MOST_BYTES: u128 = 16 << 30;
@@ -19,14 +22,61 @@ pub(crate) fn goal_bytes(width: u32, height: u32) -> u128 {
     u128::from(width) * u128::from(height) * 100
 }
 
+/// Bytes that an object and its part of the tree need while that is built, which is when they need most.
+const OBJECT_BYTES: u128 = 240;
+
+/// Addresses that an object needs then, and what the threads reserve besides. Few systems limit them.
+const OBJECT_ADDRESSES: u128 = 300;
+const THREADS_ADDRESSES: u128 = 256 << 20;
+
+/// So many objects are refused before they are made, if the memory at hand does not hold them.
+pub(crate) fn check_objects(objects: u32) -> Result<(), Failure> {
+    objects_fit(objects, free(), addresses_left())
+}
+
+fn objects_fit(objects: u32, free: Option<u64>, addresses: Option<u64>) -> Result<(), Failure> {
+    let needed = u128::from(objects) * OBJECT_BYTES;
+    let reserved = u128::from(objects) * OBJECT_ADDRESSES + THREADS_ADDRESSES;
+    for (needed, available) in [(needed, free), (reserved, addresses)] {
+        if let Some(available) = available.map(u128::from)
+            && needed > available
+        {
+            Err(anyhow!(
+                "{objects} objects need {} of memory, of which {} are free; choose a smaller --objects",
+                readable(needed),
+                readable(available),
+            ))?;
+        }
+    }
+    Ok(())
+}
+
 /// The most memory the program has held so far, in bytes; unknown except on Linux.
 pub(crate) fn peak() -> Option<u64> {
     kib_entry(&fs::read_to_string("/proc/self/status").ok()?, "VmHWM")
 }
 
-/// The memory that can be had without swapping, in bytes; unknown except on Linux.
+/// The memory that can be had without swapping, and within the limit of the shell, in bytes; unknown except on Linux.
 pub(crate) fn available() -> Option<u64> {
+    [free(), addresses_left()].into_iter().flatten().min()
+}
+
+/// The memory that can be had without swapping.
+fn free() -> Option<u64> {
     kib_entry(&fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable")
+}
+
+/// The addresses that can be had, if their number is limited.
+fn addresses_left() -> Option<u64> {
+    let table = |name: &str| fs::read_to_string(format!("/proc/self/{name}")).ok();
+    addresses_within(&table("limits")?, &table("status")?)
+}
+
+/// The addresses that a process with these limits and of this status may add; `None` if it may have as many as it likes.
+fn addresses_within(limits: &str, status: &str) -> Option<u64> {
+    let limit = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
+    let limit: u64 = limit.split_whitespace().next()?.parse().ok()?;
+    Some(limit.saturating_sub(kib_entry(status, "VmSize")?))
 }
 
 /// The value of a line such as `VmHWM:     5432 kB`, in bytes.
@@ -61,6 +111,29 @@ mod tests {
         let held = vec![1_u8; 64 << 20];
         assert!(peak().expect("known on Linux") >= held.len() as u64);
         assert!(available().expect("known on Linux") > 0);
+    }
+
+    #[test]
+    fn a_limit_on_addresses_counts_what_is_used() {
+        let limits =
+            "Limit   Soft Limit  Hard Limit  Units\nMax address space   {}   unlimited   bytes\n";
+        let left = |limit| addresses_within(&limits.replace("{}", limit), "VmSize:\t  2 kB\n");
+        assert_eq!(left("unlimited"), None);
+        assert_eq!(left("5000"), Some(5000 - 2048));
+        assert_eq!(left("1000"), Some(0));
+    }
+
+    #[test]
+    fn objects_that_no_memory_holds_are_refused() {
+        let fit = |free, addresses| objects_fit(10_000_000, free, addresses);
+        let (enough, addresses) = (Some(2_400_000_000), Some(3_300_000_000));
+        assert!(fit(None, None).is_ok() && fit(enough, addresses).is_ok());
+        let error = fit(enough.map(|free| free - 1), addresses).expect_err("too many").to_string();
+        assert_eq!(
+            error,
+            "10000000 objects need 2.2 GiB of memory, of which 2.2 GiB are free; choose a smaller --objects"
+        );
+        assert!(fit(enough, Some(3_200_000_000)).is_err());
     }
 
     #[test]

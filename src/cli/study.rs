@@ -13,7 +13,7 @@ use whitted::study::{Plan, Portrait, Step, Study, charts, report};
 
 use super::args::StudyArgs;
 use super::failure::{Failure, warn};
-use super::streams;
+use super::{memory, streams};
 
 /// The pause between two lines about how far it is.
 const INTERVAL: Duration = Duration::from_secs(2);
@@ -21,7 +21,8 @@ const INTERVAL: Duration = Duration::from_secs(2);
 pub(crate) fn run(args: &StudyArgs) -> Result<(), Failure> {
     let plan = plan(args);
     for name in &plan.scenes {
-        // A mistyped name is better found now.
+        // A mistyped name, or number, is better found now.
+        numbered(name).1.map_or(Ok(()), memory::check_objects)?;
         warn(&load(name)?.warnings, false, args.quiet)?;
     }
     let references = args.output.join("references");
@@ -57,11 +58,16 @@ fn plan(args: &StudyArgs) -> Plan {
     plan
 }
 
-/// A built-in scene or a file; a generated scene may have its number of objects behind a colon.
+/// A built-in scene or a file, as [`numbered`] takes it.
 fn load(name: &str) -> Result<Loaded, SceneError> {
-    let numbered = name.rsplit_once(':').and_then(|(scene, n)| Some((scene, n.parse().ok()?)));
-    let (name, objects) = numbered.map_or((name, None), |(scene, n)| (scene, Some(n)));
+    let (name, objects) = numbered(name);
     scene::load(name, &LoadOptions { objects, ..LoadOptions::default() })
+}
+
+/// A scene, and the number of its objects if there is one behind a colon.
+fn numbered(name: &str) -> (&str, Option<u32>) {
+    let both = name.rsplit_once(':').and_then(|(scene, n)| Some((scene, n.parse().ok()?)));
+    both.map_or((name, None), |(scene, n)| (scene, Some(n)))
 }
 
 fn file(folder: &Path, name: &str) -> Result<WholeFile, Failure> {

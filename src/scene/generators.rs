@@ -11,7 +11,7 @@ use crate::{
 /// How many objects a generated scene has unless one asks for another number.
 pub const DEFAULT_OBJECTS: u32 = 1000;
 
-/// The most objects a generated scene may have: about 8 GB of spheres and their tree.
+/// The most objects a generated scene may have: 4 GB of spheres and their tree, and 11.5 GB while that is built.
 pub const MOST_OBJECTS: u32 = 50_000_000;
 
 /// A sphere of the stress scene.

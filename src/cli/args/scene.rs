@@ -2,8 +2,10 @@
 
 use clap::Args;
 use glam::DVec3;
-use whitted::scene::{LoadOptions, Loaded, ModelPlace, SceneError};
+use whitted::scene::{LoadOptions, Loaded, ModelPlace};
 
+use super::super::failure::Failure;
+use super::super::memory;
 use super::super::parse::{parse_angle, parse_direction, parse_model, parse_objects, parse_vector};
 
 #[derive(Debug, Args)]
@@ -42,7 +44,8 @@ pub(crate) struct SceneArgs {
 
 impl SceneArgs {
     /// The scene with what the flags change about it; `rows` as in [`LoadOptions`].
-    pub(crate) fn load(&self, rows: Option<u32>) -> Result<Loaded, SceneError> {
+    pub(crate) fn load(&self, rows: Option<u32>) -> Result<Loaded, Failure> {
+        self.objects.map_or(Ok(()), memory::check_objects)?;
         let options = LoadOptions {
             models: self.models.clone(),
             eye: self.eye,
@@ -52,6 +55,6 @@ impl SceneArgs {
             objects: self.objects,
             rows,
         };
-        whitted::scene::load(&self.scene, &options)
+        Ok(whitted::scene::load(&self.scene, &options)?)
     }
 }
