@@ -1,11 +1,13 @@
-//! Rays that share a point, seen along the axis that they mostly follow: a ray is a pair of slopes, and how far it has
-//! come is its depth. Between the least and the largest slopes lies their beam: which boxes may any of them meet?
+//! Rays that share a point, seen along the axis that they mostly follow: a ray is a pair of slopes, and how far it has come is its
+//! depth. Between the least and the largest slopes lies their beam: which boxes may any of them meet?
 //!
-//! Eight boxes are tested at once against all of the beam, at the cost of one ray. Its answers are only "perhaps", like
-//! those of a single ray, and the pads of the boxes cover the roundings. With u = 2⁻²⁴: no slope is above 5/4 and no
-//! depth in the tree above 2.26, so a ray that meets anything begins at coordinates of at most 4, which are off by 2 u;
-//! its slopes are off by u, the start's own coordinate by u, the depth of a plane by 2 u, and what they give at a depth
-//! by another 4 u: together less than 12 u, and the pad is 32 u.
+//! Eight boxes are tested at once against all of the beam, at the cost of one ray. Its answers are only "perhaps", like those
+//! of a single ray, and the pads of the boxes cover the roundings. With u = 2⁻²⁴: no slope is above 5/4 and no depth in the tree
+//! above 2.26, so a ray that meets anything begins at coordinates of at most 4, which are off by 2 u; its slopes are off
+//! by u, the start's own coordinate by u, the depth of a plane by 2 u, and what they give at a depth by another 4 u:
+//! together less than 13 u, and the pad is 32 u. Far from the origin of the world's coordinates pads are larger, for the
+//! roundings of the primitives themselves, but always less than 1: depths are then up to 3.25, the roundings here less than
+//! 20 u.
 //!
 //! Source: the idea of tracing the beam instead of the rays is that of Reshetov, Soupikov & Hurley, "Multi-level ray
 //! tracing algorithm", *ACM Transactions on Graphics* 24(3) (2005).
@@ -44,8 +46,8 @@ pub(super) struct Axis {
     pub(super) forward: f64,
     /// The rays' common point, along the axis and the others.
     pub(super) point: [f64; 3],
-    /// How far from there, along the axis, depths begin to count: where the rays begin for the tree, which is a plane
-    /// shortly before it if their point is further away.
+    /// How far from there, along the axis, depths begin to count: where the rays begin for the tree, which is a plane shortly before it
+    /// if their point is further away.
     pub(super) lead: f64,
     /// The coordinate of that along the axis.
     pub(super) start: f32,

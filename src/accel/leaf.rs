@@ -1,8 +1,8 @@
 //! Leaves: up to eight primitives of a kind side by side, sorted out in single precision.
 //!
-//! Each primitive is either certainly missed, certainly hit (and where, from and to), or neither. Only the last kind
-//! must be decided in double precision at once; of the certain hits, which can mostly be told apart by their intervals,
-//! only the winner, when the search is over.
+//! Each primitive is either certainly missed, certainly hit (and where, from and to), or neither. Only the last kind must be
+//! decided in double precision at once; of the certain hits, which can mostly be told apart by their intervals, only the
+//! winner, when the search is over.
 //!
 //! The bounds: coordinates are at most 1, origins at most 2 from the centre, and so distances at most 4; with
 //! u = 2⁻²⁴, a difference "vertex − origin" is off by at most 10 u, the ray at that point by another 4 u.
@@ -107,8 +107,9 @@ impl Spheres {
             let (center, radius) = sphere(place);
             [center.x as f32, center.y as f32, center.z as f32, radius as f32]
         });
-        // The perpendicular from the centre to the ray is off by up to 27 u across and 28 u along the ray, for one of a
-        // packet, which begins further away, by 20 u and 41 u; what is made of the radius by 4 u: less than 2 pads.
+        // The perpendicular from the centre to the ray is off by up to 20 u across and 36 u along the ray, for one of a
+        // packet, which begins further away, by 20 u and 44 u. The two are at right angles, so its length is off by less
+        // than 49 u, and what is made of the radius by 4 u: less than 2 pads, which are 64 u.
         Self { rows, margin: above(2.0 * pad) }
     }
 
@@ -162,8 +163,8 @@ pub(super) struct Triangles {
 }
 
 impl Triangles {
-    /// The leaves `runs` of triangles that have these corners by their places; `coarseness` is how many times the usual
-    /// pad a box is enlarged by.
+    /// The leaves `runs` of triangles that have these corners by their places; `coarseness` is how many times the usual pad a box
+    /// is enlarged by.
     pub(super) fn new(
         runs: &[Run],
         coarseness: f64,
@@ -186,7 +187,8 @@ impl Triangles {
     ///
     /// The point a + v e₁ + w e₂ of the plane is o + t d: by Cramer's rule, with c = a − o, n = e₁ × e₂ and r = c × d,
     /// t = n·c / n·d, v = e₂·r / n·d, w = −e₁·r / n·d. Nothing is divided; v, w and 1 − v − w times |n·d|, of which the
-    /// last is the worst, are off by less than 96 u |e| |d|, n·c by 38 u |e|² and n·d by 8 u |e|² |d|.
+    /// last is the worst, are off by less than 112 u |e| |d|, n·c by 38 u |e|² and n·d by 9 u |e|² |d|; for a ray of a
+    /// packet, which begins further away, by less than twice as much.
     ///
     /// Source: Möller & Trumbore, "Fast, minimum storage ray/triangle intersection", *Journal of Graphics Tools* 2(1),
     /// 1997.

@@ -1,19 +1,18 @@
 //! The triangles of a leaf as they are seen from the point that the rays of a packet share.
 //!
-//! With a corner c away from that point, edges e₁ and e₂ from there and n = e₁ × e₂, a ray along d is at the depth n·c
-//! / n·d in the plane, at the point c + v e₁ + w e₂ where v n·d = (e₂ × c)·d and w n·d = (c × e₁)·d. What these vectors
-//! are does not depend on the ray, nor on which side of the plane the point is: once for each triangle. A ray then
-//! takes four products with its two slopes, and of eight rays at once whether any may be inside follows from their
-//! least and largest slopes.
+//! With a corner c away from that point, edges e₁ and e₂ from there and n = e₁ × e₂, a ray along d is at the depth n·c / n·d in
+//! the plane, at the point c + v e₁ + w e₂ where v n·d = (e₂ × c)·d and w n·d = (c × e₁)·d. What these vectors are does not depend on
+//! the ray, nor on which side of the plane the point is: once for each triangle. A ray then takes four products with its two slopes,
+//! and of eight rays at once whether any may be inside follows from their least and largest slopes.
 //!
-//! The bounds, with u = 2⁻²⁴, the longest edge e and nothing further from the point than r: c is off by 2 u r, so e₂ ×
-//! c, c × e₁ and what they leave of n by less than 16 u e r each; the direction is at most 2.03 long and off by 1.5 u;
-//! so v, w and 1 − v − w, times n·d, are off by less than 96 u e r, n·c by 12 u e² r and n·d by 20 u e². The slopes of
-//! eight rays being those that they have, and roundings monotonic, what is said of all eight has no other error than
-//! what is said of one.
+//! The bounds, with u = 2⁻²⁴, the longest edge e and nothing further from the point than r: c is off by 2 u r, so e₂ × c and
+//! c × e₁ by less than 6 u e r each, n by 5 u e² and, as e is at most 2 r, what they leave of n by less than 24 u e r; the
+//! direction is at most 2.03 long and off by 1.5 u; so v, w and 1 − v − w, times n·d, are off by less than 60 u e r (96 is
+//! taken), n·c by 12 u e² r and n·d by 20 u e². The slopes of eight rays being those that they have, and roundings
+//! monotonic, what is said of all eight has no other error than what is said of one.
 //!
-//! Source for the test: Möller & Trumbore, "Fast, minimum storage ray/triangle intersection", *Journal of Graphics
-//! Tools* 2(1), 1997.
+//! Source for the test: Möller & Trumbore, "Fast, minimum storage ray/triangle intersection", *Journal of Graphics Tools* 2(1),
+//! 1997.
 
 use glam::DVec3;
 
@@ -51,8 +50,8 @@ pub(super) struct Eye {
     slopes: [[Lanes; 2]; 2],
 }
 
-/// Some triangles, side by side: the three vectors whose products with a direction are positive inside, the normal,
-/// which is not turned away, and the volume n·c, which is not negative.
+/// Some triangles, side by side: the three vectors whose products with a direction are positive inside, the normal, which is not turned
+/// away, and the volume n·c, which is not negative.
 struct Seen {
     edges: [[Lanes; 3]; 3],
     normal: [Lanes; 3],
@@ -214,8 +213,7 @@ impl Eye {
     }
 }
 
-/// A vector with another sign, along the axis where that of `side` is negative, and along the others where that of
-/// `signed` is.
+/// A vector with another sign, along the axis where that of `side` is negative, and along the others where that of `signed` is.
 #[inline(always)]
 fn turned<S: Simd>(simd: S, [x, y, z]: [S::F; 3], side: S::F, signed: S::F) -> [Lanes; 3] {
     [
