@@ -2,6 +2,7 @@
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use glam::DVec3;
 use whitted::film::{Share, Tile};
@@ -16,6 +17,12 @@ const MOST_SECONDS: f64 = 1e6;
 
 /// The most threads one may ask for: more than machines have, fewer than they refuse to start.
 const MOST_THREADS: usize = 4096;
+
+/// A number of digits alone, if it fits.
+fn whole<T: FromStr>(text: &str) -> Option<T> {
+    let is_whole = text.bytes().all(|byte| byte.is_ascii_digit());
+    is_whole.then(|| text.parse().ok()).flatten()
+}
 
 /// Two numbers of pixels.
 pub(super) fn parse_sides(text: &str) -> Result<[u32; 2], String> {
@@ -71,7 +78,7 @@ pub(super) fn parse_seconds(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn parse_crop(text: &str) -> Result<Tile, String> {
-    let numbers: Vec<u32> = text.split(',').filter_map(|number| number.parse().ok()).collect();
+    let numbers: Vec<u32> = text.split(',').filter_map(whole).collect();
     match *numbers {
         [x0, y0, x1, y1] if text.split(',').count() == 4 => {
             if x0 < x1 && y0 < y1 {
@@ -89,10 +96,7 @@ pub(super) fn parse_shares(text: &str) -> Result<Shares, String> {
     let mut shares = Vec::new();
     for share in text.split(',') {
         let (index, of) = share.split_once('/').ok_or_else(shape)?;
-        let number = |digits: &str| match digits.parse() {
-            Ok(number) if digits.bytes().all(|byte| byte.is_ascii_digit()) => Ok(number),
-            _ => Err(shape()),
-        };
+        let number = |digits: &str| whole(digits).ok_or_else(shape);
         let share = Share { index: number(index)?, of: number(of)? };
         if share.index == 0 || share.index > share.of {
             return Err(shape());
@@ -106,29 +110,29 @@ pub(super) fn parse_shares(text: &str) -> Result<Shares, String> {
 }
 
 pub(super) fn parse_depth(text: &str) -> Result<u32, String> {
-    match text.parse() {
-        Ok(depth) if depth > 0 => Ok(depth),
+    match whole(text) {
+        Some(depth) if depth > 0 => Ok(depth),
         _ => Err(format!("give a whole number from 1 (camera rays only) to {}", u32::MAX)),
     }
 }
 
 pub(super) fn parse_objects(text: &str) -> Result<u32, String> {
-    match text.parse() {
-        Ok(objects @ 1..=MOST_OBJECTS) => Ok(objects),
+    match whole(text) {
+        Some(objects @ 1..=MOST_OBJECTS) => Ok(objects),
         _ => Err(format!("give a whole number from 1 to {MOST_OBJECTS}")),
     }
 }
 
 pub(super) fn parse_repeats(text: &str) -> Result<u32, String> {
-    match text.parse() {
-        Ok(repeats @ 1..=1000) => Ok(repeats),
+    match whole(text) {
+        Some(repeats @ 1..=1000) => Ok(repeats),
         _ => Err("give a whole number from 1 to 1000".to_owned()),
     }
 }
 
 pub(super) fn parse_threads(text: &str) -> Result<NonZeroUsize, String> {
-    match text.parse::<NonZeroUsize>() {
-        Ok(threads) if threads.get() <= MOST_THREADS => Ok(threads),
+    match whole::<NonZeroUsize>(text) {
+        Some(threads) if threads.get() <= MOST_THREADS => Ok(threads),
         _ => Err(format!("give a whole number from 1 to {MOST_THREADS}")),
     }
 }
@@ -265,12 +269,16 @@ mod tests {
     }
 
     #[test]
-    fn depth_and_threads_start_at_one() {
+    fn depth_threads_objects_and_repeats_start_at_one() {
         assert_eq!(parse_depth("1"), Ok(1));
         assert_eq!(parse_threads("4096").map(NonZeroUsize::get), Ok(4096));
-        for text in ["0", "-1", "two", "", "1.5", "99999999999999999999"] {
+        assert_eq!(parse_objects("50000000"), Ok(50_000_000));
+        assert_eq!(parse_repeats("1000"), Ok(1000));
+        for text in ["0", "-1", "+1", "two", "", " 1", "1.5", "99999999999999999999"] {
             assert!(parse_depth(text).is_err() && parse_threads(text).is_err(), "{text}");
+            assert!(parse_objects(text).is_err() && parse_repeats(text).is_err(), "{text}");
         }
-        assert!(parse_threads("4097").is_err());
+        assert!(parse_threads("4097").is_err() && parse_repeats("1001").is_err());
+        assert!(parse_crop("0,0,+5,5").is_err());
     }
 }
