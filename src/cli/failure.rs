@@ -87,10 +87,9 @@ impl Failure {
         Self::usage(anyhow::Error::msg(one_line(&error.to_string(), hint)))
     }
 
-    /// Warnings that the user wants to be errors.
-    fn strict(warnings: &[Warning]) -> Self {
-        let lines: Vec<String> = warnings.iter().map(ToString::to_string).collect();
-        Self { exit: Exit::Strict, error: anyhow::Error::msg(lines.join("; ")) }
+    /// A warning that the user wants to be an error.
+    pub(crate) fn strict(warning: String) -> Self {
+        Self { exit: Exit::Strict, error: anyhow::Error::msg(warning) }
     }
 
     pub(crate) fn exit_code(&self) -> ExitCode {
@@ -101,7 +100,8 @@ impl Failure {
 /// Tells the user of `warnings`, or fails for them.
 pub(crate) fn warn(warnings: &[Warning], strict: bool, quiet: bool) -> Result<(), Failure> {
     if strict && !warnings.is_empty() {
-        return Err(Failure::strict(warnings));
+        let lines: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+        return Err(Failure::strict(lines.join("; ")));
     }
     if !quiet {
         for warning in warnings {

@@ -7,7 +7,7 @@ use image::RgbImage;
 use whitted::classic::{CLASSIC_SIZE, render_classic};
 use whitted::film::metrics::read_png_rgb8;
 use whitted::film::{Difference, Film, Label, Share, encode};
-use whitted::render::{RayCounts, RenderOptions, Rendering};
+use whitted::render::{Goal, RayCounts, RenderOptions, Rendering};
 use whitted::scene::{Loaded, Scene};
 
 use super::args::{ProgressMode, RenderArgs, Rules};
@@ -18,7 +18,7 @@ use super::options::{
 };
 use super::preview::Preview;
 use super::signals::Signals;
-use super::stats::{Seconds, Statistics};
+use super::stats::{Errors, Seconds, Statistics};
 use super::target::{Picture, StatsTarget, check_apart};
 use super::{finished, streams};
 
@@ -133,15 +133,20 @@ fn perform(
         Rules::Classic => "classic".to_owned(),
         Rules::Whitted => options.aa.to_string(),
     };
+    let missed = missed_goal(&rendering, args);
     if let Some(target) = stats {
-        target.write(
-            &Statistics::new(scene, mode.clone(), &rendering, measured, seconds).to_json()?,
-        )?;
+        let has_goal = options.goal != Goal::Mode;
+        let errors = Errors { measured, is_goal_reached: has_goal.then_some(missed.is_none()) };
+        let statistics = Statistics::new(scene, mode.clone(), &rendering, &errors, seconds);
+        target.write(&statistics.to_json()?)?;
+    }
+    if let Some(warning) = missed.as_ref().filter(|_| !args.quiet && !args.strict) {
+        streams::note(&match args.progress {
+            ProgressMode::Json => serde_json::json!({ "warning": warning }).to_string(),
+            _ => format!("warning: {warning}"),
+        });
     }
     if !is_silent {
-        for warning in warnings(&rendering, args) {
-            streams::note(&format!("warning: {warning}"));
-        }
         streams::note(&summary(&picture.name(), mode, &rendering, measured, total));
         if args.rules == Rules::Classic {
             let RayCounts { camera_hit, reflected, refracted, shadow, .. } = rendering.rays;
@@ -151,7 +156,10 @@ fn perform(
             ));
         }
     }
-    Ok(())
+    match missed {
+        Some(warning) if args.strict => Err(Failure::strict(warning)),
+        _ => Ok(()),
+    }
 }
 
 /// The error against the reference, as the picture file will have it.
@@ -162,22 +170,19 @@ fn measure(film: &Film, reference: &RgbImage) -> Result<f64, Failure> {
 }
 
 /// What was aimed at but not reached.
-fn warnings(rendering: &Rendering, args: &RenderArgs) -> Vec<String> {
+fn missed_goal(rendering: &Rendering, args: &RenderArgs) -> Option<String> {
     let outcome = &rendering.outcome;
-    let mut warnings = Vec::new();
     if let (Some(wanted), Some(reached)) = (outcome.missed_error, rendering.estimated_rmse) {
-        warnings.push(format!(
+        return Some(format!(
             "--max-error {wanted} is not reached: the estimated error is {reached:.3} levels with the most rays a pixel \
              may get; allow more, such as --aa adaptive:0,4096"
         ));
     }
-    if let (Some(late), Some(limit)) = (outcome.late, args.time_limit) {
-        warnings.push(format!(
-            "--time-limit {limit} is too short for one ray in each pixel, which took {:.3} s; nothing was refined",
-            late.as_secs_f64()
-        ));
-    }
-    warnings
+    let (late, limit) = (outcome.late?, args.time_limit?);
+    Some(format!(
+        "--time-limit {limit} is too short for one ray in each pixel, which took {:.3} s; nothing was refined",
+        late.as_secs_f64()
+    ))
 }
 
 /// What was done and what it took, in two lines.

@@ -67,6 +67,16 @@ struct Error {
     measured_rmse: Option<f64>,
     /// The squared error for each ray at which pixels stopped, if the goal was an error.
     squared_per_ray: Option<f32>,
+    /// Whether the error wanted, or the time limit, was kept; if there was one.
+    goal_reached: Option<bool>,
+}
+
+/// What is known of the error beside the rendering itself.
+pub(crate) struct Errors {
+    /// Against the reference.
+    pub(crate) measured: Option<f64>,
+    /// If there was a goal.
+    pub(crate) is_goal_reached: Option<bool>,
 }
 
 impl<'a> Statistics<'a> {
@@ -74,7 +84,7 @@ impl<'a> Statistics<'a> {
         scene: &'a Scene,
         mode: String,
         rendering: &Rendering,
-        measured_rmse: Option<f64>,
+        errors: &Errors,
         seconds: Seconds,
     ) -> Self {
         let RayCounts { camera, reflected, refracted, transmitted, shadow, camera_hit } =
@@ -95,8 +105,9 @@ impl<'a> Statistics<'a> {
             samples_per_pixel: Samples::of(&rendering.film),
             error: Error {
                 estimated_rmse: rendering.estimated_rmse,
-                measured_rmse,
+                measured_rmse: errors.measured,
                 squared_per_ray: rendering.outcome.per_ray,
+                goal_reached: errors.is_goal_reached,
             },
             peak_memory_bytes: memory::peak(),
             version: env!("CARGO_PKG_VERSION"),

@@ -31,6 +31,7 @@ fn an_error_is_aimed_at_measured_and_missed_with_a_warning() {
     let stats: Value = json(&output.stdout);
     let error = |key: &str| stats["error"][key].as_f64().expect("a number");
     assert!(error("estimated_rmse") <= 5.0 && error("squared_per_ray") > 0.0, "{stats}");
+    assert_eq!(stats["error"]["goal_reached"], true);
     assert!(error("measured_rmse") < 10.0 && error("measured_rmse") > 2.0, "{stats}");
     let output =
         run(folder.path(), &[&small[..], &["--max-error", "0.5", "--aa", "adaptive:0,8"]].concat());
@@ -52,6 +53,37 @@ fn a_time_limit_ends_in_a_picture() {
     let output = run(folder.path(), &["render", "--size", "64x48", "--time-limit", "0.3"]);
     done(&output);
     assert!(said(&output).contains("adaptive until the time was up"));
+}
+
+/// A goal that is missed is a warning to people, a line and a statistic to programs, and an error under `--strict`; the picture is
+/// written all the same.
+#[test]
+fn a_missed_goal_is_told_in_every_way() {
+    let goals = [
+        (&["--max-error", "0.1", "--aa", "adaptive:0,8"][..], "--max-error 0.1 is not reached"),
+        (&["--time-limit", "0.000001"], "--time-limit 0.000001 is too short"),
+    ];
+    for (goal, message) in goals {
+        let folder = folder();
+        let render = |more: &[&str]| {
+            run(folder.path(), &[&["render", "--size", "40x30"], goal, more].concat())
+        };
+        let output = render(&["--strict", "--quiet"]);
+        assert_refused(&output, 4, &[message]);
+        assert_picture(&read(folder.path(), "assignment.png"), 40, 30);
+        let output = render(&["--strict"]);
+        assert_eq!(output.status.code(), Some(4));
+        let lines: Vec<&str> = said(&output).lines().collect();
+        assert!(lines[0].starts_with("wrote assignment.png"), "{lines:?}");
+        assert!(lines[2].starts_with("error: ") && lines[2].contains(message), "{lines:?}");
+        let output = render(&["--progress", "json", "--stats", "-"]);
+        done(&output);
+        let stats: Value = json(&output.stdout);
+        assert_eq!(stats["error"]["goal_reached"], false);
+        let lines: Vec<Value> = said(&output).lines().map(|line| json(line.as_bytes())).collect();
+        let warnings = lines.iter().filter_map(|line| line["warning"].as_str());
+        assert_eq!(warnings.filter(|warning| warning.starts_with(message)).count(), 1, "{lines:?}");
+    }
 }
 
 /// A wavy sheet whose every vertex has a colour of its own, as an OBJ file.

@@ -28,7 +28,7 @@ fn statistics_hold_every_key_and_what_was_asked_for() {
     let mut found = Vec::new();
     keys(&stats, "", &mut found);
     found.sort();
-    let expected = "aa bvh.bytes bvh.nodes depth error.estimated_rmse error.measured_rmse error.squared_per_ray height \
+    let expected = "aa bvh.bytes bvh.nodes depth error.estimated_rmse error.goal_reached error.measured_rmse error.squared_per_ray height \
         lights peak_memory_bytes primitives rays.camera rays.camera_hit rays.reflected \
         rays.refracted rays.shadow rays.transmitted samples_per_pixel.max samples_per_pixel.mean \
         samples_per_pixel.min scene seconds.build seconds.load seconds.render seconds.total \
@@ -44,6 +44,7 @@ fn statistics_hold_every_key_and_what_was_asked_for() {
     assert_eq!(stats["samples_per_pixel"], serde_json::json!({ "min": 4, "mean": 4.0, "max": 4 }));
     assert!(stats["error"]["estimated_rmse"].as_f64().expect("a number") > 0.0);
     assert_eq!(stats["error"]["measured_rmse"], Value::Null);
+    assert_eq!(stats["error"]["goal_reached"], Value::Null);
     for step in ["load", "build", "render", "write", "total"] {
         assert!(stats["seconds"][step].as_f64().expect("a number") >= 0.0, "{step}");
     }
