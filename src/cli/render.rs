@@ -93,7 +93,7 @@ fn task(
     let stats =
         args.stats.as_deref().map(|path| StatsTarget::prepare(path, in_name)).transpose()?;
     check_apart(&picture, stats.as_ref())?;
-    let options = options(args, scene, share, started)?;
+    let options = options(args, scene, share, (started, picture.format()))?;
     let label = label(args, scene, hash, &options, share);
     Ok(Task { options, label, picture, stats })
 }

@@ -59,6 +59,13 @@ impl Picture {
         }
     }
 
+    pub(crate) fn format(&self) -> Format {
+        match self {
+            Self::Stdout => Format::Png,
+            Self::File(file) => file.format(),
+        }
+    }
+
     /// For the user.
     pub(crate) fn name(&self) -> String {
         match self {
