@@ -7,7 +7,7 @@ use image::RgbImage;
 use whitted::classic::{CLASSIC_SIZE, render_classic};
 use whitted::film::metrics::read_png_rgb8;
 use whitted::film::{Difference, Film, Label, Share, encode};
-use whitted::render::{Goal, RayCounts, RenderOptions, Rendering};
+use whitted::render::{Goal, Outcome, RayCounts, RenderOptions, Rendering};
 use whitted::scene::{Loaded, Scene};
 
 use super::args::{ProgressMode, RenderArgs, Rules};
@@ -193,9 +193,14 @@ fn summary(
     measured: Option<f64>,
     total: f64,
 ) -> String {
-    let mode = match (rendering.outcome.cut, rendering.outcome.per_ray) {
-        (true, _) => "adaptive until the time was up".to_owned(),
-        (_, Some(per_ray)) => format!("adaptive to {per_ray:.4} squared levels per ray"),
+    let mode = match rendering.outcome {
+        Outcome { is_used_up: true, .. } => {
+            format!("with all rays that {mode} allows, before the time was up")
+        }
+        Outcome { cut: true, .. } => "adaptive until the time was up".to_owned(),
+        Outcome { per_ray: Some(per_ray), .. } => {
+            format!("adaptive to {per_ray:.4} squared levels per ray")
+        }
         _ => mode,
     };
     let estimated =

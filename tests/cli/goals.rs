@@ -50,9 +50,14 @@ fn a_time_limit_ends_in_a_picture() {
     done(&output);
     assert!(said(&output).contains("warning: --time-limit 0.000001 is too short"));
     assert_picture(&read(folder.path(), "assignment.png"), 64, 48);
-    let output = run(folder.path(), &["render", "--size", "64x48", "--time-limit", "0.3"]);
+    let output = run(folder.path(), &["render", "--size", "160x120", "--time-limit", "0.3"]);
     done(&output);
     assert!(said(&output).contains("adaptive until the time was up"));
+    // Few rays a pixel, which are spent long before the hour is over.
+    let few = ["render", "--size", "12x8", "--time-limit", "3600", "--aa", "adaptive:0,16"];
+    let output = run(folder.path(), &few);
+    done(&output);
+    assert!(said(&output).contains("with all rays that adaptive:0,16 allows, before the time"));
 }
 
 /// A goal that is missed is a warning to people, a line and a statistic to programs, and an error under `--strict`; the picture is
