@@ -139,7 +139,8 @@ fn cost_by_objects(rows: &[&Row]) -> Chart {
         .into_iter()
         .zip(COLORS.iter().cycle())
         .map(|(mode, color)| {
-            let own: Vec<&&Row> = rows.iter().filter(|row| row.mode == mode).collect();
+            let is_known = |row: &&&Row| row.mode == mode && row.relative_seconds.is_finite();
+            let own: Vec<&&Row> = rows.iter().filter(is_known).collect();
             Series {
                 // Without the floor.
                 points: own

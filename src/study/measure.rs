@@ -218,8 +218,8 @@ fn row(
         measured_rmse,
         estimated_rmse: rendering.estimated_rmse.unwrap_or(f64::NAN),
         worst,
-        relative_seconds: 1.0,
-        relative_rays: 1.0,
+        relative_seconds: f64::NAN,
+        relative_rays: f64::NAN,
     }
 }
 
@@ -256,5 +256,27 @@ mod tests {
     fn medians_are_in_the_middle() {
         assert_eq!(median(vec![3.0, 1.0, 9.0]), 3.0);
         assert_eq!(median(vec![3.0, 1.0, 9.0, 5.0]), 4.0);
+    }
+
+    #[test]
+    fn without_the_mode_none_nothing_is_a_multiple_of_it() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let plan = Plan {
+            scenes: Vec::new(),
+            objects: Vec::new(),
+            builds: Vec::new(),
+            sizes: vec![[4, 3]],
+            small_size: [4, 3],
+            reference_rays: 4,
+            ..Plan::quick()
+        };
+        let load = |name: &str| crate::scene::load_builtin(name);
+        let rows = super::run(&plan, &load, folder.path(), &|_| ()).expect("a study").rows;
+        assert!(rows.iter().any(|row| row.trade == Trade::Depth));
+        for row in rows {
+            let is_known = row.trade != Trade::Depth;
+            assert_eq!(row.relative_seconds.is_finite(), is_known, "{row:?}");
+            assert_eq!(row.relative_rays.is_finite(), is_known, "{row:?}");
+        }
     }
 }

@@ -71,13 +71,14 @@ pub struct Row {
     pub rays_per_pixel: f64,
     /// The error against the converged picture: root mean square of all channels in levels of 255, before rounding.
     pub measured_rmse: f64,
-    /// What the render said it was.
+    /// What the render said it was; NaN if it said nothing.
     pub estimated_rmse: f64,
     /// The largest difference of a channel in levels.
     pub worst: f64,
-    /// The time as a multiple of that of `none`, of the same scene and size and with a tree built by the preset `auto`.
+    /// The time as a multiple of that of `none`, of the same scene and size and with a tree built by the preset `auto`; NaN if
+    /// that was not rendered.
     pub relative_seconds: f64,
-    /// The rays as a multiple of those of `none`.
+    /// The rays as a multiple of those of `none`, likewise.
     pub relative_rays: f64,
 }
 

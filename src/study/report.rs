@@ -4,7 +4,10 @@ use std::fmt::Write;
 
 use super::{Row, Study, Trade, plot::Chart, svg::escaped};
 
-/// The rows as comma-separated values, a line each, under a line of names.
+/// What stands in a table for what is not known.
+const DASH: &str = "–";
+
+/// The rows as comma-separated values, a line each, under a line of names; what is not known is empty.
 pub fn csv(rows: &[Row]) -> String {
     let mut text =
         "trade,scene,primitives,width,height,depth,mode,build,build_seconds,seconds,rays,rays_per_pixel,measured_rmse,\
@@ -16,25 +19,29 @@ pub fn csv(rows: &[Row]) -> String {
         // Writing to a string does not fail. Modes hold commas.
         let _ = writeln!(
             text,
-            "{},\"{}\",{primitives},{width},{height},{depth},\"{}\",{build},{build_seconds:.6},{seconds:.6},{rays},{:.4},{:.5},{:.5},{worst:.2},\
-             {:.4},{:.4}",
+            "{},\"{}\",{primitives},{width},{height},{depth},\"{}\",{build},{build_seconds:.6},{seconds:.6},{rays},{:.4},{:.5},{},{worst:.2},{},{}",
             trade(row.trade),
             row.scene.replace('"', "\"\""),
             row.mode,
             row.rays_per_pixel,
             row.measured_rmse,
-            row.estimated_rmse,
-            row.relative_seconds,
-            row.relative_rays,
+            known(row.estimated_rmse, 5, ""),
+            known(row.relative_seconds, 4, ""),
+            known(row.relative_rays, 4, ""),
         );
     }
     text
 }
 
-/// The rows as JSON, with the program's version and the threads used.
+/// A number with so many digits behind the point, or what stands for one that is not known.
+fn known(number: f64, digits: usize, unknown: &str) -> String {
+    if number.is_finite() { format!("{number:.digits$}") } else { unknown.to_owned() }
+}
+
+/// The rows as JSON, with the program's version and the threads used; what is not known is `null`.
 ///
 /// # Errors
-/// None, for numbers that are finite.
+/// None.
 pub fn json(study: &Study, threads: usize) -> serde_json::Result<String> {
     let object = serde_json::json!({
         "version": env!("CARGO_PKG_VERSION"),
@@ -59,33 +66,36 @@ pub fn markdown(rows: &[Row]) -> String {
             continue;
         }
         let _ = write!(text, "\n## {heading}\n\n");
-        let add = if kind == Trade::Build { add_builds } else { add_errors };
-        add(&mut text, &rows);
+        match kind {
+            Trade::Build => add_builds(&mut text, &rows),
+            // The estimate is of what the rays of a pixel miss, the error that of the rays that were not cast.
+            Trade::Depth => add_errors(&mut text, &rows, false),
+            _ => add_errors(&mut text, &rows, true),
+        }
     }
     text
 }
 
-/// Adds a table of errors and what they cost.
-fn add_errors(text: &mut String, rows: &[&Row]) {
-    *text += "| scene | size | depth | mode | seconds | x none | rays x none | rays/pixel | error | estimate | est./error | worst |\n\
-              | --- | --- | ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
+/// Adds a table of errors and what they cost, and if they are of one kind, what estimates are to them.
+fn add_errors(text: &mut String, rows: &[&Row], compares_estimates: bool) {
+    let [name, line] = if compares_estimates { [" est./error |", " ---: |"] } else { [""; 2] };
+    let _ = writeln!(
+        text,
+        "| scene | size | depth | mode | seconds | x none | rays x none | rays/pixel | error | estimate |{name} worst |\n\
+         | --- | --- | ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: |{line} ---: |"
+    );
     for row in rows {
+        let Row { scene, width, height, depth, mode, seconds, measured_rmse, worst, .. } = row;
+        let ratio = known(row.estimated_rmse / measured_rmse, 2, DASH);
+        let ratio = if compares_estimates { format!(" {ratio} |") } else { String::new() };
         let _ = writeln!(
             text,
-            "| {} | {}x{} | {} | {} | {:.4} | {:.2} | {:.2} | {:.2} | {:.3} | {:.3} | {:.2} | {:.0} |",
-            row.scene,
-            row.width,
-            row.height,
-            row.depth,
-            row.mode,
-            row.seconds,
-            row.relative_seconds,
-            row.relative_rays,
+            "| {scene} | {width}x{height} | {depth} | {mode} | {seconds:.4} | {} | {} | {:.2} | {measured_rmse:.3} | {} |{ratio} \
+             {worst:.0} |",
+            known(row.relative_seconds, 2, DASH),
+            known(row.relative_rays, 2, DASH),
             row.rays_per_pixel,
-            row.measured_rmse,
-            row.estimated_rmse,
-            row.estimated_rmse / row.measured_rmse,
-            row.worst,
+            known(row.estimated_rmse, 3, DASH),
         );
     }
 }
@@ -96,10 +106,10 @@ fn add_builds(text: &mut String, rows: &[&Row]) {
               | --- | --- | --- | --- | ---: | ---: | ---: |\n";
     for row in rows {
         let Row { scene, width, height, mode, build, build_seconds, .. } = row;
-        let Row { seconds, relative_seconds, .. } = row;
+        let (seconds, relative) = (row.seconds, known(row.relative_seconds, 2, DASH));
         let _ = writeln!(
             text,
-            "| {scene} | {width}x{height} | {mode} | {build} | {build_seconds:.4} | {seconds:.4} | {relative_seconds:.2} |",
+            "| {scene} | {width}x{height} | {mode} | {build} | {build_seconds:.4} | {seconds:.4} | {relative} |",
         );
     }
 }
@@ -206,6 +216,44 @@ mod tests {
             worst: 77.0,
             relative_seconds: 1.5,
             relative_rays: 2.0,
+        }
+    }
+
+    /// A row of which no `none` is known has nothing to be a multiple of, and errors of cut-off rays are not what is estimated.
+    #[test]
+    fn what_is_not_known_is_left_open() {
+        let unknown = Row {
+            trade: Trade::Depth,
+            relative_seconds: f64::NAN,
+            relative_rays: f64::NAN,
+            ..row("adaptive:1,64")
+        };
+        let exact = Row { measured_rmse: 0.0, estimated_rmse: 0.0, ..row("none") };
+        let rows = [unknown, exact];
+        let table = csv(&rows);
+        let lines: Vec<Vec<String>> = table.lines().map(cells).collect();
+        assert_eq!(lines[1][15..], ["", ""], "{table}");
+        assert_eq!(lines[2][15..], ["1.5000", "2.0000"], "{table}");
+        let study = Study { rows: rows.to_vec(), portraits: Vec::new() };
+        let read: serde_json::Value =
+            serde_json::from_str(&json(&study, 2).expect("JSON")).expect("JSON");
+        assert!(
+            read["rows"][0]["relative_seconds"].is_null()
+                && read["rows"][0]["relative_rays"].is_null()
+        );
+        let text = markdown(&rows);
+        assert!(text.contains("| 0.2500 | – | – | 4.50 | 2.500 | 3.000 | 77 |"), "{text}");
+        assert!(
+            text.contains("| 0.2500 | 1.50 | 2.00 | 4.50 | 0.000 | 0.000 | – | 77 |"),
+            "{text}"
+        );
+        for table in text.split("\n## ").skip(1) {
+            let counts: Vec<usize> = table
+                .lines()
+                .filter(|line| line.starts_with('|'))
+                .map(|line| line.matches('|').count())
+                .collect();
+            assert!(counts.len() == 3 && counts.iter().all(|&count| count == counts[0]), "{table}");
         }
     }
 
