@@ -50,7 +50,12 @@ pub(crate) fn run(args: &StudyArgs) -> Result<(), Failure> {
 fn plan(args: &StudyArgs) -> Plan {
     let mut plan = if args.quick { Plan::quick() } else { Plan::full() };
     if !args.scenes.is_empty() {
-        plan.scenes.clone_from(&args.scenes);
+        plan.scenes.clear();
+        for scene in &args.scenes {
+            if !plan.scenes.contains(scene) {
+                plan.scenes.push(scene.clone());
+            }
+        }
     }
     plan.size = args.size.unwrap_or(plan.size);
     plan.repeats = args.repeats.unwrap_or(plan.repeats);
@@ -95,12 +100,12 @@ fn write(args: &StudyArgs, study: &Study) -> Result<(), Failure> {
         file(folder, &format!("{}.png", chart.name))?
             .commit(|writer| write_rgb8(&plot.bytes, plot.width, plot.height, writer))?;
     }
-    study.portraits.iter().try_for_each(|portrait| write_portrait(folder, portrait))
+    let mut portraits = study.portraits.iter().zip(report::file_names(&scenes));
+    portraits.try_for_each(|(portrait, name)| write_portrait(folder, &name, portrait))
 }
 
-fn write_portrait(folder: &Path, portrait: &Portrait) -> Result<(), Failure> {
-    let Portrait { scene, film, errors } = portrait;
-    let name = report::file_name(scene);
+fn write_portrait(folder: &Path, name: &str, portrait: &Portrait) -> Result<(), Failure> {
+    let Portrait { film, errors, .. } = portrait;
     let width = film.width();
     OutputFile::prepare(folder.join(format!("{name}.png")))?.commit(film, None)?;
     let rays: Vec<f32> = film.samples().iter().map(|rays| *rays as f32).collect();

@@ -5,7 +5,7 @@ use super::{
     draw::Color,
     pareto_front,
     plot::{Chart, Series, plot},
-    report::file_name,
+    report::file_names,
 };
 
 /// The plots that the rows give.
@@ -13,9 +13,10 @@ pub fn charts(rows: &[Row]) -> Vec<Chart> {
     let of = |trade: Trade| rows.iter().filter(move |row| row.trade == trade).collect::<Vec<_>>();
     let mut charts = Vec::new();
     let accuracy = of(Trade::Accuracy);
-    for scene in names(&accuracy, |row| &row.scene) {
-        let rows: Vec<&Row> = accuracy.iter().copied().filter(|row| row.scene == scene).collect();
-        charts.push(error_against_time(&scene, &rows));
+    let scenes = names(&accuracy, |row| &row.scene);
+    for (scene, file) in scenes.iter().zip(file_names(&scenes)) {
+        let rows: Vec<&Row> = accuracy.iter().copied().filter(|row| row.scene == *scene).collect();
+        charts.push(error_against_time(scene, &file, &rows));
     }
     if !accuracy.is_empty() {
         charts.push(estimate_against_error(&accuracy));
@@ -62,7 +63,7 @@ fn family(mode: &str) -> &str {
     mode.split(':').next().unwrap_or(mode)
 }
 
-fn error_against_time(scene: &str, rows: &[&Row]) -> Chart {
+fn error_against_time(scene: &str, file: &str, rows: &[&Row]) -> Chart {
     let points: Vec<(f64, f64)> = rows.iter().map(|row| (row.seconds, row.measured_rmse)).collect();
     let mut series = vec![Series {
         name: "Pareto front".to_owned(),
@@ -93,7 +94,7 @@ fn error_against_time(scene: &str, rows: &[&Row]) -> Chart {
     }
     let (width, height) = rows.first().map_or((0, 0), |row| (row.width, row.height));
     plot(
-        &format!("error-{}", file_name(scene)),
+        &format!("error-{file}"),
         &format!("Error against time: {scene}, {width}x{height}"),
         ("seconds", true),
         ("error, levels of 255 (root mean square)", true),
