@@ -30,7 +30,13 @@ pub enum ImageError {
         /// What the system says.
         source: io::Error,
     },
-    /// The file is not a picture of the expected format, or a damaged one.
+    /// The file is of another kind.
+    #[error("{}: not a PNG file, and no other pictures can be compared; write or convert it to PNG", path.display())]
+    NotPng {
+        /// The file as given.
+        path: PathBuf,
+    },
+    /// The file is a damaged picture.
     #[error("{}: not a valid PNG file ({source})", path.display())]
     Decode {
         /// The file as given.

@@ -1,7 +1,7 @@
 //! How far two 8-bit pictures are apart.
 
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufRead, BufReader, Seek};
 use std::path::Path;
 
 use image::{ImageReader, RgbImage};
@@ -99,17 +99,35 @@ impl Difference {
     }
 }
 
+/// How every PNG file begins.
+const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1a\n";
+
 /// Reads a PNG file as 8-bit RGB: grey is spread to three channels, 16-bit rounded to 8, alpha
 /// left out.
 ///
 /// # Errors
 ///
-/// [`ImageError::Read`] if there is no readable file, [`ImageError::Decode`] if it is no sound PNG.
+/// [`ImageError::Read`] if there is no readable file, [`ImageError::NotPng`] or [`ImageError::Decode`] if it is no sound PNG.
 pub fn read_png_rgb8(path: impl AsRef<Path>) -> Result<RgbImage, ImageError> {
     let path = path.as_ref();
     let file =
         File::open(path).map_err(|source| ImageError::Read { path: path.to_owned(), source })?;
-    let mut reader = ImageReader::with_format(BufReader::new(file), image::ImageFormat::Png);
+    decode_png_rgb8(BufReader::new(file), path)
+}
+
+/// The same of a file that is open already; `path` is for messages.
+///
+/// # Errors
+///
+/// As [`read_png_rgb8`].
+pub fn decode_png_rgb8(mut file: impl BufRead + Seek, path: &Path) -> Result<RgbImage, ImageError> {
+    let start =
+        file.fill_buf().map_err(|source| ImageError::Read { path: path.to_owned(), source })?;
+    // Of a shorter start the decoder says what is missing.
+    if start.len() >= SIGNATURE.len() && !start.starts_with(&SIGNATURE) {
+        return Err(ImageError::NotPng { path: path.to_owned() });
+    }
+    let mut reader = ImageReader::with_format(file, image::ImageFormat::Png);
     // The largest picture the program writes is beyond the decoder's usual limit.
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(16 << 30);
@@ -144,6 +162,20 @@ mod tests {
         assert_eq!(difference.worst, Worst { levels: 12, x: 0, y: 1 });
         assert!((difference.share_over_8 - 0.3).abs() < 1e-15, "{difference:?}");
         assert_eq!(Difference::between(&b, &a).expect("same size"), difference);
+    }
+
+    #[test]
+    fn pictures_of_another_kind_are_told_from_broken_ones() {
+        let decode = |bytes: &[u8]| {
+            let decoded = decode_png_rgb8(std::io::Cursor::new(bytes), Path::new("a.exr"));
+            decoded.expect_err("no picture").to_string()
+        };
+        for other in [&b"P6 1 1 255 abc"[..], b"\x76\x2f\x31\x01\x02\0\0\0"] {
+            assert!(decode(other).starts_with("a.exr: not a PNG file, and no other"));
+        }
+        for broken in [&SIGNATURE[..], &SIGNATURE[..3], b""] {
+            assert!(decode(broken).starts_with("a.exr: not a sound PNG file ("));
+        }
     }
 
     #[test]
