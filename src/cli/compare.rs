@@ -1,29 +1,51 @@
 //! `whitted compare`: how far two pictures are apart.
 
 use std::fmt::Write;
-use std::path::Path;
+use std::fs;
+use std::io::{self, IsTerminal, Read};
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 use image::RgbImage;
 use whitted::film::heatmap::{Scale, write_heatmap};
-use whitted::film::metrics::{channel_differences, read_png_rgb8, structural_similarity};
+use whitted::film::metrics::{
+    channel_differences, decode_png_rgb8, read_png_rgb8, structural_similarity,
+};
 use whitted::film::{Difference, WholeFile};
 
 use super::args::CompareArgs;
 use super::failure::Failure;
 use super::streams;
 
+/// The file name that stands for standard input or output.
+const STREAM: &str = "-";
+
 pub(crate) fn run(args: &CompareArgs) -> Result<(), Failure> {
-    let (a, b) = (read_png_rgb8(&args.a)?, read_png_rgb8(&args.b)?);
+    let map = args.heatmap.as_deref().map(|path| Map::prepare(path, args)).transpose()?;
+    if [&args.a, &args.b].iter().all(|path| path.as_os_str() == STREAM) {
+        return Err(Failure::usage(anyhow!(
+            "both pictures are to come from standard input, which holds one; name a file for the other"
+        )));
+    }
+    let (a, b) = (read_picture(&args.a)?, read_picture(&args.b)?);
     let difference = Difference::between(&a, &b)
         .with_context(|| format!("{} and {}", args.a.display(), args.b.display()))?;
     let similarity = structural_similarity(&a, &b)?;
-    if let Some(path) = &args.heatmap {
-        heatmap(path, &a, &b).context("--heatmap")?;
-    }
     let text =
         if args.json { json(&difference, similarity)? } else { table(&difference, similarity)? };
-    streams::write_stdout(text.as_bytes())?;
+    match map {
+        Some(Map::Stdout) => {
+            let mut bytes = Vec::new();
+            write_map(&a, &b, &mut bytes).context("--heatmap")?;
+            streams::write_stdout(&bytes)?;
+            streams::note(text.trim_end());
+        }
+        Some(Map::File(file)) => {
+            file.commit(|writer| write_map(&a, &b, writer)).context("--heatmap")?;
+            streams::write_stdout(text.as_bytes())?;
+        }
+        None => streams::write_stdout(text.as_bytes())?,
+    }
     match args.fail_above {
         Some(limit) if difference.rmse > limit => Err(Failure::over_limit(anyhow!(
             "the pictures differ by {:.4} of 255 levels (root mean square), more than --fail-above {limit}",
@@ -31,6 +53,61 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), Failure> {
         ))),
         _ => Ok(()),
     }
+}
+
+/// Reads a PNG file, or one from standard input.
+pub(crate) fn read_picture(path: &Path) -> Result<RgbImage, Failure> {
+    if path.as_os_str() != STREAM {
+        return Ok(read_png_rgb8(path)?);
+    }
+    let mut bytes = Vec::new();
+    io::stdin().read_to_end(&mut bytes).context("standard input cannot be read")?;
+    Ok(decode_png_rgb8(io::Cursor::new(bytes), Path::new("standard input"))?)
+}
+
+/// Where the picture of the differences goes.
+enum Map {
+    Stdout,
+    File(WholeFile),
+}
+
+impl Map {
+    /// The place that the user names, which is none of the pictures that are compared.
+    fn prepare(path: &Path, args: &CompareArgs) -> Result<Self, Failure> {
+        if path.as_os_str() == STREAM {
+            let fault = if args.json {
+                "the numbers of --json go to standard output too; name a file for one"
+            } else if io::stdout().is_terminal() {
+                "standard output is a terminal, which shows no PNG; redirect it or name a file"
+            } else {
+                return Ok(Self::Stdout);
+            };
+            return Err(Failure::usage(anyhow!("--heatmap -: {fault}")));
+        }
+        let file = WholeFile::prepare(path).context("--heatmap")?;
+        let is_png =
+            path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
+        if file.is_on_disk() && !is_png {
+            return Err(Failure::usage(anyhow!(
+                "--heatmap {}: is written as PNG; end the name with .png",
+                path.display()
+            )));
+        }
+        let place = |path: &Path| fs::canonicalize(path).ok();
+        let is_input = |input: &&PathBuf| place(input).is_some_and(|it| Some(it) == place(path));
+        if let Some(input) = [&args.a, &args.b].into_iter().find(is_input) {
+            return Err(Failure::usage(anyhow!(
+                "--heatmap {}: would replace {}, which is compared; name another file",
+                path.display(),
+                input.display()
+            )));
+        }
+        Ok(Self::File(file))
+    }
+}
+
+fn write_map(a: &RgbImage, b: &RgbImage, writer: impl io::Write) -> io::Result<()> {
+    write_heatmap(&channel_differences(a, b), a.width(), &Scale::LEVELS, writer)
 }
 
 fn table(difference: &Difference, similarity: f64) -> Result<String, Failure> {
@@ -56,10 +133,4 @@ fn json(difference: &Difference, similarity: f64) -> Result<String, Failure> {
         "ssim": similarity,
     });
     Ok(serde_json::to_string_pretty(&object)? + "\n")
-}
-
-fn heatmap(path: &Path, a: &RgbImage, b: &RgbImage) -> Result<(), anyhow::Error> {
-    let values = channel_differences(a, b);
-    let file = WholeFile::prepare(path)?;
-    Ok(file.commit(|writer| write_heatmap(&values, a.width(), &Scale::LEVELS, writer))?)
 }

@@ -5,12 +5,12 @@ use std::time::Instant;
 use anyhow::Context;
 use image::RgbImage;
 use whitted::classic::{CLASSIC_SIZE, render_classic};
-use whitted::film::metrics::read_png_rgb8;
 use whitted::film::{Difference, Film, Label, Share, encode};
 use whitted::render::{Goal, Outcome, RayCounts, RenderOptions, Rendering};
 use whitted::scene::{Loaded, Scene};
 
 use super::args::{ProgressMode, RenderArgs, Rules};
+use super::compare::read_picture;
 use super::failure::{Failure, warn};
 use super::job::{self, Finished, Order};
 use super::options::{
@@ -52,7 +52,7 @@ pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
     for share in shares {
         tasks.push(task(args, &scene, &hash, share, several, started)?);
     }
-    let reference = args.reference.as_deref().map(read_png_rgb8).transpose()?;
+    let reference = args.reference.as_deref().map(read_picture).transpose()?;
     for task in &tasks {
         check_memory(&task.label, task.options.goal)?;
         check_reference(&task.label, reference.as_ref())?;

@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::Value;
 
 use super::{assert_picture, assert_refused};
-use crate::program::{done, folder, json, names_in, read, run, said, text};
+use crate::program::{done, folder, json, names_in, read, run, said, text, whitted};
 
 #[test]
 fn compare_measures_maps_and_judges() {
@@ -36,6 +36,49 @@ fn compare_measures_maps_and_judges() {
         2,
         &["--fail-above"],
     );
+}
+
+/// A dash is standard input or output, what is compared is not replaced, and what is no PNG is not written as one.
+#[test]
+fn pictures_come_and_go_through_pipes_and_replace_nothing() {
+    let folder = folder();
+    for (name, aa) in [("a.png", "none"), ("b.png", "grid:2"), ("c.exr", "none"), ("c.ppm", "none")]
+    {
+        done(&run(folder.path(), &["render", "--size", "20x15", "--aa", aa, "-o", name]));
+    }
+    let piped = |name: &str, arguments: &[&str]| {
+        let file = fs::File::open(folder.path().join(name)).expect("there");
+        whitted(folder.path(), arguments).stdin(file).output().expect("the program runs")
+    };
+    let plain = run(folder.path(), &["compare", "a.png", "b.png"]);
+    done(&plain);
+    assert_eq!(piped("b.png", &["compare", "a.png", "-"]).stdout, plain.stdout);
+    assert_eq!(piped("a.png", &["compare", "-", "b.png"]).stdout, plain.stdout);
+    let output = piped("a.png", &["compare", "-", "b.png", "--heatmap", "-"]);
+    done(&output);
+    assert_picture(&output.stdout, 20, 15);
+    assert_eq!(said(&output), text(&plain.stdout));
+    let output = piped("a.png", &["render", "--size", "20x15", "--aa", "none", "--reference", "-"]);
+    done(&output);
+    assert!(said(&output).contains(", 0.00 measured"), "{}", said(&output));
+
+    let kept = names_in(folder.path());
+    let before = read(folder.path(), "a.png");
+    let both = ["a.png", "b.png"];
+    for (pictures, more, code, parts) in [
+        (["-", "-"], &[][..], 2, &["standard input", "one"][..]),
+        (both, &["--heatmap", "-", "--json"], 2, &["--heatmap -", "--json"]),
+        (both, &["--heatmap", "a.png"], 2, &["--heatmap a.png", "compared"]),
+        (both, &["--heatmap", "./b.png"], 2, &["--heatmap ./b.png", "replace b.png"]),
+        (both, &["--heatmap", "map.jpg"], 2, &["map.jpg", ".png"]),
+        (["a.png", "c.exr"], &[], 1, &["c.exr", "not a PNG file", "no other pictures"]),
+        (["c.ppm", "a.png"], &[], 1, &["c.ppm", "not a PNG file", "no other pictures"]),
+    ] {
+        let arguments = [&["compare"], &pictures[..], more].concat();
+        assert_refused(&run(folder.path(), &arguments), code, parts);
+    }
+    assert_refused(&piped("c.ppm", &["compare", "a.png", "-"]), 1, &["standard input", "PNG"]);
+    assert!(names_in(folder.path()) == kept && read(folder.path(), "a.png") == before);
 }
 
 #[test]

@@ -164,13 +164,14 @@ Examples:
   whitted compare a.png b.png --heatmap difference.png
   whitted compare a.png b.png --fail-above 0.5     exit code 6 if they differ by more")]
 pub(crate) struct CompareArgs {
-    /// First picture (PNG)
+    /// First picture (PNG), or - for standard input; colours are compared, alpha is not
     pub(crate) a: PathBuf,
 
-    /// Second picture (PNG), of the same size
+    /// Second picture (PNG), of the same size, or -
     pub(crate) b: PathBuf,
 
-    /// PNG to write that shows where they differ: black up to half a level, pale from 128 levels up
+    /// PNG to write that shows where they differ: black up to half a level, pale from 128 levels up; - is standard
+    /// output, and the numbers then go to standard error
     #[arg(long, value_name = "FILE")]
     pub(crate) heatmap: Option<PathBuf>,
 

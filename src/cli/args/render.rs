@@ -83,7 +83,7 @@ pub(crate) struct RenderArgs {
         allow_negative_numbers = true, help_heading = "Long renders")]
     pub(crate) checkpoint: f64,
 
-    /// PNG of the same size to measure the error against
+    /// PNG of the same size to measure the error against; - is standard input
     #[arg(long, value_name = "FILE", help_heading = "Quality")]
     pub(crate) reference: Option<PathBuf>,
 
