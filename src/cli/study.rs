@@ -28,13 +28,14 @@ pub(crate) fn run(args: &StudyArgs) -> Result<(), Failure> {
     let references = args.output.join("references");
     fs::create_dir_all(&references)
         .with_context(|| format!("{}: the folder cannot be created", references.display()))?;
-    let table = file(&args.output, "study.csv")?;
+    for name in report::files(&plan.scenes) {
+        file(&args.output, &name)?;
+    }
 
     let progress = Lines::new(args.quiet);
     let study = whitted::study::run(&plan, &|name| Ok(load(name)?.scene), &references, &|step| {
         progress.report(step);
     })?;
-    table.commit(|writer| writer.write_all(report::csv(&study.rows).as_bytes()))?;
     write(args, &study)?;
     if !args.quiet {
         let seconds = progress.started.elapsed().as_secs_f64();
@@ -79,7 +80,7 @@ fn file(folder: &Path, name: &str) -> Result<WholeFile, Failure> {
     Ok(WholeFile::prepare(folder.join(name))?)
 }
 
-/// Everything but `study.csv`.
+/// Writes the files of [`report::files`], the rows first.
 fn write(args: &StudyArgs, study: &Study) -> Result<(), Failure> {
     let folder = &args.output;
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
@@ -87,6 +88,7 @@ fn write(args: &StudyArgs, study: &Study) -> Result<(), Failure> {
     let charts = charts::charts(&study.rows);
     let scenes: Vec<String> = study.portraits.iter().map(|p| p.scene.clone()).collect();
     let mut texts = vec![
+        ("study.csv".to_owned(), report::csv(&study.rows)),
         ("study.json".to_owned(), report::json(study, threads)?),
         ("study.md".to_owned(), report::markdown(&study.rows)),
         ("index.html".to_owned(), report::html(&study.rows, &charts, &scenes)),

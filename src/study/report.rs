@@ -186,6 +186,20 @@ pub fn file_names(scenes: &[String]) -> Vec<String> {
     names
 }
 
+/// The files of a study of these scenes, but for plots of what it did not measure: more than these are not written.
+pub fn files(scenes: &[String]) -> Vec<String> {
+    let both = |plot: &str| [format!("{plot}.svg"), format!("{plot}.png")];
+    let mut files: Vec<String> =
+        ["study.csv", "study.json", "study.md", "index.html"].map(str::to_owned).to_vec();
+    files.extend(SHARED_PLOTS.into_iter().flat_map(both));
+    for name in file_names(scenes) {
+        let [picture, rays, error, plot] = pictures(&name);
+        files.extend([picture, rays, error].map(|stem| format!("{stem}.png")));
+        files.extend(both(&plot));
+    }
+    files
+}
+
 /// The pictures of a scene whose files are called `name`, without extensions: itself, rays, errors, and error against time.
 fn pictures(name: &str) -> [String; 4] {
     [name.to_owned(), format!("{name}-rays"), format!("{name}-error"), format!("error-{name}")]
@@ -220,7 +234,7 @@ fn cells(line: &str) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{super::charts::charts, *};
 
     #[test]
     fn files_of_a_scene_have_plain_names() {
@@ -313,6 +327,20 @@ mod tests {
                 .map(|line| line.matches('|').count())
                 .collect();
             assert!(counts.len() == 3 && counts.iter().all(|&count| count == counts[0]), "{table}");
+        }
+    }
+
+    #[test]
+    fn every_plot_is_among_the_files() {
+        let trades = [Trade::Accuracy, Trade::Objects, Trade::Depth, Trade::Size, Trade::Build];
+        let rows = trades.map(|trade| Row { trade, ..row("none") });
+        let (charts, files) = (charts(&rows), files(&["spheres:10".to_owned()]));
+        assert_eq!(charts.len(), 5);
+        for Chart { name, .. } in charts {
+            assert!(
+                ["png", "svg"].iter().all(|kind| files.contains(&format!("{name}.{kind}"))),
+                "{name}"
+            );
         }
     }
 

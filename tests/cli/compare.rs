@@ -88,4 +88,15 @@ fn a_study_that_cannot_be_written_is_refused_at_once() {
     assert_refused(&run(folder.path(), &["study", "--quick", "-o", "plain"]), 1, &["plain"]);
     assert_refused(&run(folder.path(), &["study", "nowhere"]), 2, &["nowhere", "assignment"]);
     assert_eq!(names_in(folder.path()), ["plain"]);
+    for name in
+        ["study.csv", "index.html", "depth.svg", "assignment-rays.png", "error-assignment.png"]
+    {
+        let place = folder.path().join(name);
+        fs::create_dir(&place).expect("made");
+        let output = run(folder.path(), &["study", "--quick", "-o", ".", "assignment"]);
+        assert_refused(&output, 1, &[name, "is a folder"]);
+        fs::remove_dir(&place).expect("removed");
+    }
+    assert_eq!(names_in(folder.path()), ["plain", "references"]);
+    assert_eq!(names_in(&folder.path().join("references")), [""; 0]);
 }
