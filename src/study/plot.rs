@@ -71,7 +71,7 @@ impl Axis {
         let (low, high) = if log {
             (low / 1.25, high * 1.25)
         } else {
-            let margin = ((high - low) * 0.08).max(1e-9);
+            let margin = ((high - low) * 0.08).max(0.02 * high.abs()).max(1e-9);
             (low - margin, high + margin)
         };
         Self { log, low, high, from, to }
@@ -128,8 +128,12 @@ pub(super) fn plot(
     y_name: AxisName,
     series: &[Series],
 ) -> Chart {
-    let (width, height) = (900.0, 560.0);
-    let (left, right, top, bottom) = (80.0, width - 190.0, 40.0, height - 60.0);
+    let height = 560.0;
+    let (left, right, top, bottom) = (80.0, 710.0, 40.0, height - 60.0);
+    let name_at = right + 26.0;
+    let end = |from: f64, text: &str| from + LETTER * (text.chars().count() + 1) as f64;
+    let ends = series.iter().map(|series| end(name_at, &series.name));
+    let width = ends.fold(end(left, title).max(900.0), f64::max).ceil();
     let mut drawing = Drawing { width, height, ..Drawing::default() };
     let all = || series.iter().flat_map(|s| s.points.iter().copied());
     let x_axis = Axis::new(all().map(|p| p.0), x_name.1, left, right);
@@ -168,7 +172,7 @@ pub(super) fn plot(
         }
         let y = top + 10.0 + 20.0 * f64::from(place);
         drawing.disc((right + 16.0, y - 4.0), 4.0, series.color);
-        drawing.text((right + 26.0, y), &series.name, Anchor::Start, BLACK);
+        drawing.text((name_at, y), &series.name, Anchor::Start, BLACK);
     }
     Chart { name: name.to_owned(), title: title.to_owned(), drawing }
 }
@@ -176,6 +180,27 @@ pub(super) fn plot(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Oracle: the last letter, wherever it is, has as much room as each has.
+    #[test]
+    fn names_and_titles_have_room() {
+        let chart = |title: &str, name: &str| {
+            let series = Series {
+                name: name.to_owned(),
+                points: vec![(1.0, 1.0)],
+                labels: Vec::new(),
+                color: BLACK,
+                line: false,
+                dots: true,
+            };
+            plot("a", title, ("x", true), ("y", true), &[series]).drawing.width
+        };
+        assert_eq!(chart("short", "short"), 900.0);
+        let name = "a scene with a long name, adaptive:1,64";
+        assert!(chart("short", name) >= 736.0 + LETTER * 39.0);
+        let title = "a".repeat(200);
+        assert!(chart(&title, "short") >= 80.0 + LETTER * 200.0);
+    }
 
     /// Oracle: worked by hand.
     #[test]
