@@ -47,6 +47,23 @@ const COLORS: [Color; 7] = [
     [120, 120, 120],
 ];
 
+/// The axis of errors.
+const ERROR_AXIS: &str = "error, levels of 255 (root mean square)";
+
+/// Errors below this many levels are of rounding, and are drawn as this much.
+const LEAST_ERROR: f64 = 1e-3;
+
+/// The measured error as it is drawn.
+fn error(row: &Row) -> f64 {
+    row.measured_rmse.max(LEAST_ERROR)
+}
+
+/// The name of an axis of errors, which says if some are less than is drawn.
+fn error_axis(name: &str, errors: impl Iterator<Item = f64>) -> String {
+    let is_cut = errors.into_iter().any(|error| error < LEAST_ERROR);
+    if is_cut { format!("{name}; {LEAST_ERROR} or less at the least") } else { name.to_owned() }
+}
+
 /// The distinct values of a field, in the order of their first appearance.
 fn names(rows: &[&Row], field: impl Fn(&Row) -> &String) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
@@ -64,7 +81,7 @@ fn family(mode: &str) -> &str {
 }
 
 fn error_against_time(scene: &str, file: &str, rows: &[&Row]) -> Chart {
-    let points: Vec<(f64, f64)> = rows.iter().map(|row| (row.seconds, row.measured_rmse)).collect();
+    let points: Vec<(f64, f64)> = rows.iter().map(|row| (row.seconds, error(row))).collect();
     let mut series = vec![Series {
         name: "Pareto front".to_owned(),
         points: pareto_front(&points),
@@ -85,7 +102,7 @@ fn error_against_time(scene: &str, file: &str, rows: &[&Row]) -> Chart {
         };
         series.push(Series {
             name: (*family_name).to_owned(),
-            points: own.iter().map(|row| (row.seconds, row.measured_rmse)).collect(),
+            points: own.iter().map(|row| (row.seconds, error(row))).collect(),
             labels: own.iter().map(|row| label(&row.mode)).collect(),
             color,
             line: false,
@@ -93,17 +110,19 @@ fn error_against_time(scene: &str, file: &str, rows: &[&Row]) -> Chart {
         });
     }
     let (width, height) = rows.first().map_or((0, 0), |row| (row.width, row.height));
+    let y = error_axis(ERROR_AXIS, rows.iter().map(|row| row.measured_rmse));
     plot(
         &format!("error-{file}"),
         &format!("Error against time: {scene}, {width}x{height}"),
         ("seconds", true),
-        ("error, levels of 255 (root mean square)", true),
+        (&y, true),
         &series,
     )
 }
 
 fn estimate_against_error(rows: &[&Row]) -> Chart {
-    let all = rows.iter().flat_map(|row| [row.measured_rmse, row.estimated_rmse]);
+    let estimate = |row: &Row| row.estimated_rmse.max(LEAST_ERROR);
+    let all = rows.iter().flat_map(|row| [error(row), estimate(row)]);
     let (low, high) =
         all.fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
     let line = |name: &str, factor: f64, color| Series {
@@ -122,7 +141,7 @@ fn estimate_against_error(rows: &[&Row]) -> Chart {
     for (scene, color) in names(rows, |row| &row.scene).into_iter().zip(COLORS.iter().cycle()) {
         let own = rows.iter().filter(|row| row.scene == scene);
         series.push(Series {
-            points: own.map(|row| (row.measured_rmse, row.estimated_rmse)).collect(),
+            points: own.map(|row| (error(row), estimate(row))).collect(),
             name: scene,
             labels: Vec::new(),
             color: *color,
@@ -130,9 +149,12 @@ fn estimate_against_error(rows: &[&Row]) -> Chart {
             dots: true,
         });
     }
-    let (x, y) =
-        (("measured error, levels of 255", true), ("estimated error, levels of 255", true));
-    plot("estimate", "What renders say of their error, against the truth", x, y, &series)
+    let measured = rows.iter().map(|row| row.measured_rmse);
+    let estimated = rows.iter().map(|row| row.estimated_rmse);
+    let x = error_axis("measured error, levels of 255", measured);
+    let y = error_axis("estimated error, levels of 255", estimated);
+    let title = "What renders say of their error, against the truth";
+    plot("estimate", title, (&x, true), (&y, true), &series)
 }
 
 fn cost_by_objects(rows: &[&Row]) -> Chart {
@@ -169,15 +191,15 @@ fn cost_by_objects(rows: &[&Row]) -> Chart {
 fn error_by_depth(rows: &[&Row]) -> Chart {
     let series = [Series {
         name: rows.first().map_or_else(String::new, |row| format!("{}, {}", row.scene, row.mode)),
-        points: rows.iter().map(|row| (f64::from(row.depth), row.measured_rmse)).collect(),
+        points: rows.iter().map(|row| (f64::from(row.depth), error(row))).collect(),
         labels: rows.iter().map(|row| format!("{:.0} ms", row.seconds * 1e3)).collect(),
         color: COLORS[0],
         line: true,
         dots: true,
     }];
-    let (x, y) =
-        (("deepest level of recursion", false), ("error, levels of 255 (root mean square)", true));
-    plot("depth", "What a lower limit of the recursion loses", x, y, &series)
+    let y = error_axis(ERROR_AXIS, rows.iter().map(|row| row.measured_rmse));
+    let x = ("deepest level of recursion", false);
+    plot("depth", "What a lower limit of the recursion loses", x, (&y, true), &series)
 }
 
 fn time_by_build(rows: &[&Row]) -> Chart {
@@ -201,4 +223,28 @@ fn time_by_build(rows: &[&Row]) -> Chart {
         format!("What a longer build of the tree gives back: {width}x{height}, one ray per pixel");
     let (x, y) = (("build, seconds", true), ("picture, seconds", true));
     plot("build", &title, x, y, &series)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A picture of one colour is right to the last bits in every mode, which no plot is to blow up.
+    #[test]
+    fn errors_of_rounding_are_drawn_as_the_least() {
+        let axis = |errors: &[f64]| error_axis("error", errors.iter().copied());
+        assert_eq!(axis(&[0.002, 3.0]), "error");
+        assert_eq!(axis(&[0.0, 3.0]), "error; 0.001 or less at the least");
+        let rows = [0.0, 5e-5, 2e-5].map(|measured_rmse| Row {
+            measured_rmse,
+            estimated_rmse: 0.0,
+            ..Row::example("adaptive:4,64")
+        });
+        let svgs: Vec<String> = charts(&rows).iter().map(Chart::svg).collect();
+        assert_eq!(svgs.len(), 2);
+        for svg in svgs {
+            assert!(svg.contains(">0.001<") && svg.contains("0.001 or less"), "{svg}");
+            assert!(!svg.contains("e-5<") && !svg.contains("NaN"), "{svg}");
+        }
+    }
 }

@@ -190,6 +190,32 @@ pub(crate) fn pareto_front(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
 }
 
 #[cfg(test)]
+impl Row {
+    /// A row of the accuracy trade.
+    fn example(mode: &str) -> Self {
+        Self {
+            trade: Trade::Accuracy,
+            scene: "spheres:10".to_owned(),
+            primitives: 11,
+            width: 4,
+            height: 3,
+            depth: 6,
+            mode: mode.to_owned(),
+            build: "auto".to_owned(),
+            build_seconds: 0.125,
+            seconds: 0.25,
+            rays: 1234,
+            rays_per_pixel: 4.5,
+            measured_rmse: 2.5,
+            estimated_rmse: 3.0,
+            worst: 77.0,
+            relative_seconds: 1.5,
+            relative_rays: 2.0,
+        }
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
 

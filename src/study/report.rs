@@ -270,28 +270,6 @@ mod tests {
         assert_eq!((files.len(), count), (28, 28), "{names:?}");
     }
 
-    fn row(mode: &str) -> Row {
-        Row {
-            trade: Trade::Accuracy,
-            scene: "spheres:10".to_owned(),
-            primitives: 11,
-            width: 4,
-            height: 3,
-            depth: 6,
-            mode: mode.to_owned(),
-            build: "auto".to_owned(),
-            build_seconds: 0.125,
-            seconds: 0.25,
-            rays: 1234,
-            rays_per_pixel: 4.5,
-            measured_rmse: 2.5,
-            estimated_rmse: 3.0,
-            worst: 77.0,
-            relative_seconds: 1.5,
-            relative_rays: 2.0,
-        }
-    }
-
     /// A row of which no `none` is known has nothing to be a multiple of, and errors of cut-off rays are not what is estimated.
     #[test]
     fn what_is_not_known_is_left_open() {
@@ -299,9 +277,9 @@ mod tests {
             trade: Trade::Depth,
             relative_seconds: f64::NAN,
             relative_rays: f64::NAN,
-            ..row("adaptive:1,64")
+            ..Row::example("adaptive:1,64")
         };
-        let exact = Row { measured_rmse: 0.0, estimated_rmse: 0.0, ..row("none") };
+        let exact = Row { measured_rmse: 0.0, estimated_rmse: 0.0, ..Row::example("none") };
         let rows = [unknown, exact];
         let table = csv(&rows);
         let lines: Vec<Vec<String>> = table.lines().map(cells).collect();
@@ -333,7 +311,7 @@ mod tests {
     #[test]
     fn every_plot_is_among_the_files() {
         let trades = [Trade::Accuracy, Trade::Objects, Trade::Depth, Trade::Size, Trade::Build];
-        let rows = trades.map(|trade| Row { trade, ..row("none") });
+        let rows = trades.map(|trade| Row { trade, ..Row::example("none") });
         let (charts, files) = (charts(&rows), files(&["spheres:10".to_owned()]));
         assert_eq!(charts.len(), 5);
         for Chart { name, .. } in charts {
@@ -347,8 +325,8 @@ mod tests {
     /// Oracle: as many cells in each line as names in the first.
     #[test]
     fn tables_have_a_cell_for_every_name() {
-        let build = Row { trade: Trade::Build, build: "fast".to_owned(), ..row("none") };
-        let rows = [row("none"), row("adaptive:4,64"), build];
+        let build = Row { trade: Trade::Build, build: "fast".to_owned(), ..Row::example("none") };
+        let rows = [Row::example("none"), Row::example("adaptive:4,64"), build];
         let text = csv(&rows);
         let lines: Vec<Vec<String>> = text.lines().map(cells).collect();
         assert_eq!(lines.len(), 4);
