@@ -42,7 +42,8 @@ pub enum AntiAliasing {
     Adaptive {
         /// The error of a pixel that is good enough: root mean square of its channels, in levels of 255.
         error: f32,
-        /// The most rays through a pixel; at least 1.
+        /// The most rays through a pixel; at least 1, and 2 or 3 are as 1, since what a pixel gets after its centre is at least
+        /// three.
         most: u32,
     },
 }
@@ -62,14 +63,18 @@ pub enum AaError {
     },
     /// The grid is empty, too large or not a number.
     #[error(
-        "anti-aliasing mode `grid:{side}` needs a whole number of rays along a pixel's side, from 1 to 64"
+        "anti-aliasing mode {} needs a whole number of rays along a pixel's side, from 1 to 64",
+        with_number("grid", side)
     )]
     Side {
         /// What was read behind the colon.
         side: String,
     },
     /// The sequence is empty, too long or not a number.
-    #[error("anti-aliasing mode `sobol:{count}` needs a whole number of rays, from 1 to 1048576")]
+    #[error(
+        "anti-aliasing mode {} needs a whole number of rays, from 1 to 1048576",
+        with_number("sobol", count)
+    )]
     Count {
         /// What was read behind the colon.
         count: String,
@@ -88,6 +93,11 @@ pub enum AaError {
         /// What was read behind the colon.
         text: String,
     },
+}
+
+/// The mode with what was read for its number; with N where there was nothing.
+fn with_number(mode: &str, read: &str) -> String {
+    format!("`{mode}:{}`", if read.is_empty() { "N" } else { read })
 }
 
 impl Default for AntiAliasing {
@@ -139,6 +149,7 @@ impl FromStr for AntiAliasing {
                 _ => Err(AaError::Count { count: count.to_owned() }),
             },
             Some(("adaptive", numbers)) => adaptive(numbers),
+            _ if text == "sobol" => Err(AaError::Count { count: String::new() }),
             _ if text == "grid" => Err(AaError::Side { side: String::new() }),
             _ => Err(AaError::UnknownMode { text: text.to_owned() }),
         }
@@ -188,7 +199,10 @@ mod tests {
         {
             assert!(matches!(text.parse::<AntiAliasing>(), Err(AaError::Side { .. })), "{text}");
         }
-        for text in ["sobol:", "sobol:0", "sobol:-1", "sobol:1.5"] {
+        let message = |text: &str| text.parse::<AntiAliasing>().expect_err(text).to_string();
+        assert!(message("grid").starts_with("anti-aliasing mode `grid:N` needs a whole number"));
+        assert!(message("grid:x").starts_with("anti-aliasing mode `grid:x` needs a whole number"));
+        for text in ["sobol", "sobol:", "sobol:0", "sobol:-1", "sobol:1.5"] {
             assert!(matches!(text.parse::<AntiAliasing>(), Err(AaError::Count { .. })), "{text}");
         }
         for text in [
