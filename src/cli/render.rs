@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use anyhow::Context;
 use image::RgbImage;
+use whitted::aa::AntiAliasing;
 use whitted::classic::{CLASSIC_SIZE, render_classic};
 use whitted::film::{Difference, Film, Label, Share, encode};
 use whitted::render::{Goal, Outcome, RayCounts, RenderOptions, Rendering};
@@ -14,7 +15,8 @@ use super::compare::read_picture;
 use super::failure::{Failure, warn};
 use super::job::{self, Finished, Order};
 use super::options::{
-    check_classic, check_memory, check_parts, check_reference, check_size, label, options,
+    MOST_RAYS, check_classic, check_memory, check_parts, check_reference, check_size, label,
+    options,
 };
 use super::preview::Preview;
 use super::signals::Signals;
@@ -133,7 +135,7 @@ fn perform(
         Rules::Classic => "classic".to_owned(),
         Rules::Whitted => options.aa.to_string(),
     };
-    let missed = missed_goal(&rendering, args);
+    let missed = missed_goal(&rendering, args, options.aa, &seconds);
     if let Some(target) = stats {
         let has_goal = options.goal != Goal::Mode;
         let errors = Errors { measured, is_goal_reached: has_goal.then_some(missed.is_none()) };
@@ -170,19 +172,50 @@ fn measure(film: &Film, reference: &RgbImage) -> Result<f64, Failure> {
 }
 
 /// What was aimed at but not reached.
-fn missed_goal(rendering: &Rendering, args: &RenderArgs) -> Option<String> {
+fn missed_goal(
+    rendering: &Rendering,
+    args: &RenderArgs,
+    aa: AntiAliasing,
+    seconds: &Seconds,
+) -> Option<String> {
     let outcome = &rendering.outcome;
     if let (Some(wanted), Some(reached)) = (outcome.missed_error, rendering.estimated_rmse) {
+        let advice = match aa {
+            AntiAliasing::Adaptive { most, .. } if wanted > 0.0 && most < MOST_RAYS => {
+                let more = most.saturating_mul(4).clamp(4096, MOST_RAYS);
+                format!("allow more, such as --aa adaptive:0,{more}")
+            }
+            _ => format!("allow a larger one, such as --max-error {}", rounded_up(reached)),
+        };
         return Some(format!(
-            "--max-error {wanted} is not reached: the estimated error is {reached:.3} levels with the most rays a pixel \
-             may get; allow more, such as --aa adaptive:0,4096"
+            "--max-error {wanted} is not reached: the estimated error is {} levels with the most rays a pixel may get; {advice}",
+            short(reached)
         ));
     }
     let (late, limit) = (outcome.late?, args.time_limit?);
+    let Seconds { load, build, write, .. } = seconds;
     Some(format!(
-        "--time-limit {limit} is too short for one ray in each pixel, which took {:.3} s; nothing was refined",
-        late.as_secs_f64()
+        "--time-limit {limit} is too short for one ray in each pixel, which took {:.3} s after {:.3} s of loading, before {write:.3} s \
+         of writing; nothing was refined",
+        late.as_secs_f64(),
+        load + build,
     ))
+}
+
+/// A number with three digits behind the point, or more if it is small.
+fn short(number: f64) -> String {
+    match number {
+        0.0 | 0.01.. => format!("{number:.3}"),
+        1e-4..0.01 => format!("{number:.5}"),
+        _ => format!("{number:.2e}"),
+    }
+}
+
+/// An error with one digit that is not below `error`, and above 0.
+fn rounded_up(error: f64) -> String {
+    let unit = 10_f64.powi(error.max(1e-9).log10().floor() as i32);
+    let digits = (-unit.log10()).round().max(0.0) as usize;
+    format!("{:.digits$}", (error / unit).ceil().max(1.0) * unit)
 }
 
 /// What was done and what it took, in two lines.
@@ -199,7 +232,7 @@ fn summary(
         }
         Outcome { cut: true, .. } => "adaptive until the time was up".to_owned(),
         Outcome { per_ray: Some(per_ray), .. } => {
-            format!("adaptive to {per_ray:.4} squared levels per ray")
+            format!("adaptive to {} squared levels per ray", short(f64::from(per_ray)))
         }
         _ => mode,
     };
@@ -226,4 +259,26 @@ fn summary(
         rays.transmitted,
         rays.shadow,
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_numbers_keep_their_digits() {
+        let shown = [0.0, 2.1e-5, 0.001_23, 0.0123, 0.5, 25.75].map(short);
+        assert_eq!(shown, ["0.000", "2.10e-5", "0.00123", "0.012", "0.500", "25.750"]);
+    }
+
+    /// Oracle: what is advised is reached by what was.
+    #[test]
+    fn an_error_that_is_advised_is_one_that_was_reached() {
+        let advised = [0.0123, 0.5, 0.999, 6.2, 25.75].map(rounded_up);
+        assert_eq!(advised, ["0.02", "0.5", "1.0", "7", "30"]);
+        for error in [1e-7, 3.3e-4, 0.07, 0.3, 1.0, 254.0] {
+            let advised: f64 = rounded_up(error).parse().expect("a number");
+            assert!(advised > 0.0 && advised >= error * 0.999_999, "{error}: {advised}");
+        }
+    }
 }

@@ -37,6 +37,20 @@ fn an_error_is_aimed_at_measured_and_missed_with_a_warning() {
         run(folder.path(), &[&small[..], &["--max-error", "0.5", "--aa", "adaptive:0,8"]].concat());
     done(&output);
     assert!(said(&output).starts_with("warning: --max-error 0.5 is not reached"));
+    assert!(said(&output).contains("allow more, such as --aa adaptive:0,4096\n"));
+    for (error, aa, advice) in [
+        ("0.001", "adaptive:0,5000", "allow more, such as --aa adaptive:0,20000\n"),
+        ("0.0001", "adaptive:0,400000", "allow more, such as --aa adaptive:0,1048576\n"),
+        ("0.00001", "adaptive:0,1048576", "allow a larger one, such as --max-error 0."),
+        ("0", "adaptive:0,16", "allow a larger one, such as --max-error "),
+    ] {
+        // A pixel with an edge in it, which no number of rays gets right to the last bit.
+        let pixel = ["--crop", "14,15,15,16", "--max-error", error, "--aa", aa];
+        let output = run(folder.path(), &[&small[..], &pixel].concat());
+        done(&output);
+        assert!(said(&output).contains(advice), "{}", said(&output));
+        assert!(!said(&output).contains(" 0.0000 squared"), "{}", said(&output));
+    }
     let output = run(folder.path(), &["render", "--size", "41x30", "--reference", "truth.png"]);
     assert_refused(&output, 2, &["--reference", "41x30", "40x30"]);
     assert_refused(&run(folder.path(), &["render", "--reference", "no.png"]), 1, &["no.png"]);
@@ -49,6 +63,10 @@ fn a_time_limit_ends_in_a_picture() {
     let output = run(folder.path(), &["render", "--size", "64x48", "--time-limit", "0.000001"]);
     done(&output);
     assert!(said(&output).contains("warning: --time-limit 0.000001 is too short"));
+    assert!(
+        said(&output).contains(" s of loading, before ")
+            && said(&output).contains(" s of writing;")
+    );
     assert_picture(&read(folder.path(), "assignment.png"), 64, 48);
     let output = run(folder.path(), &["render", "--size", "160x120", "--time-limit", "0.3"]);
     done(&output);
