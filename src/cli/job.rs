@@ -2,6 +2,7 @@
 
 use std::{
     panic::resume_unwind,
+    sync::atomic::Ordering,
     time::{Duration, Instant},
 };
 
@@ -60,6 +61,10 @@ pub(crate) fn run(
     let stop = signals.defer();
     let course = Course::default();
     let report = |progress: Progress| {
+        // All blocks of a picture towards a goal are put down as they are when it is stopped, which does not finish it.
+        if options.goal != Goal::Mode && stop.load(Ordering::Relaxed) {
+            return;
+        }
         course.report(progress);
         reporter.report(&progress);
     };
@@ -79,6 +84,7 @@ pub(crate) fn run(
             _ => "stopping: keeping the picture as it is; interrupt again to stop at once",
         },
         note: &|line| note(args, line),
+        tick: &|| reporter.tick(),
     };
     let effort = render(order, &job, &watcher, preview)?;
     reporter.end();

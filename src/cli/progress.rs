@@ -40,6 +40,8 @@ struct Clock {
     started: Instant,
     /// The share that was done then.
     share: f64,
+    /// The furthest report since, if there was any.
+    latest: Option<Progress>,
     /// When something was shown last, and how far the render was.
     last: (Instant, u64),
 }
@@ -58,18 +60,27 @@ impl Reporter {
                 format: plain_line,
                 interval: PLAIN_INTERVAL,
                 tells_end: false,
+                repeats: true,
             }),
-            ProgressMode::Json => {
-                Kind::Lines(Lines { format: json_line, interval: JSON_INTERVAL, tells_end: true })
-            }
+            ProgressMode::Json => Kind::Lines(Lines {
+                format: json_line,
+                interval: JSON_INTERVAL,
+                tells_end: true,
+                repeats: false,
+            }),
             ProgressMode::Openjd => Kind::Lines(Lines {
                 format: openjd_lines,
                 interval: OPENJD_INTERVAL,
                 tells_end: true,
+                repeats: false,
             }),
         };
         let started = Instant::now();
-        Self { kind, pixels, clock: Mutex::new(Clock { started, share: 0.0, last: (started, 0) }) }
+        Self {
+            kind,
+            pixels,
+            clock: Mutex::new(Clock { started, share: 0.0, latest: None, last: (started, 0) }),
+        }
     }
 
     /// The render begins now, and a share of it was done before.
@@ -98,6 +109,16 @@ impl Reporter {
         }
     }
 
+    /// Shows the last report again where that is due; to be called now and then.
+    pub(crate) fn tick(&self) {
+        if let Kind::Lines(lines) = &self.kind
+            && lines.repeats
+            && let Some(report) = self.overdue(lines.interval, Instant::now())
+        {
+            streams::note(&(lines.format)(&report));
+        }
+    }
+
     /// Takes the bar away, to make room for what is said at the end.
     pub(crate) fn end(&self) {
         if let Kind::Bar(bar) = &self.kind {
@@ -117,23 +138,32 @@ impl Reporter {
         let &Progress { done, total } = progress;
         // A thread that died while it held the lock left numbers that are still good.
         let mut clock = self.clock.lock().unwrap_or_else(PoisonError::into_inner);
+        // Reports of several threads may overtake each other.
+        if clock.latest.is_none_or(|latest| latest.done < done) {
+            clock.latest = Some(*progress);
+        }
         let is_end = tells_end && done >= total;
         let is_due = now.saturating_duration_since(clock.last.0) >= interval;
-        // Reports of several threads may overtake each other.
         if done <= clock.last.1 || !(is_due || is_end) {
             return None;
         }
-        clock.last = (now, done);
+        Some(self.take(&mut clock, now))
+    }
+
+    /// The last report once more, if nothing was shown for so long.
+    fn overdue(&self, interval: Duration, now: Instant) -> Option<Report> {
+        let mut clock = self.clock.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_due = now.saturating_duration_since(clock.last.0) >= interval;
+        is_due.then(|| self.take(&mut clock, now))
+    }
+
+    /// What there is to show at the moment `now`, which is noted.
+    fn take(&self, clock: &mut Clock, now: Instant) -> Report {
         let elapsed = now.saturating_duration_since(clock.started).as_secs_f64();
-        let share = done as f64 / total.max(1) as f64;
-        Some(Report {
-            done,
-            total,
-            share,
-            elapsed,
-            fresh: share - clock.share,
-            pixels: self.pixels,
-        })
+        let Progress { done, total } = clock.latest.unwrap_or(Progress { done: 0, total: 0 });
+        clock.last = (now, done);
+        let share = if total == 0 { clock.share } else { done as f64 / total as f64 };
+        Report { done, total, share, elapsed, fresh: share - clock.share, pixels: self.pixels }
     }
 }
 
@@ -158,6 +188,8 @@ struct Lines {
     format: fn(&Report) -> String,
     interval: Duration,
     tells_end: bool,
+    /// Whether a line comes after the pause even if there is nothing new, as on a long step of a render towards a goal.
+    repeats: bool,
 }
 
 /// Standard error as indicatif draws on it, terminal or not, for whoever asks for the bar by name.
@@ -239,6 +271,27 @@ mod tests {
         let expected =
             ["10 % after 5 s, 46 s left, 20 kpixels/s", "40 % after 10 s, 15 s left, 39 kpixels/s"];
         assert_eq!(lines_of(ProgressMode::Plain, 0.0, &reports), expected);
+    }
+
+    /// A step of a render towards a goal may take minutes, in which there is nothing to report.
+    #[test]
+    fn plain_lines_come_where_nothing_is_new() {
+        let reporter = Reporter::new(ProgressMode::Plain, 1e6);
+        reporter.begin(0.0);
+        let started = reporter.clock.lock().expect("no panic").started;
+        let at = |seconds: f64| started + Duration::from_secs_f64(seconds);
+        let overdue = |seconds| Some(plain_line(&reporter.overdue(PLAIN_INTERVAL, at(seconds))?));
+        let reported = |seconds, done| {
+            let progress = Progress { done, total: 100 };
+            Some(plain_line(&reporter.due(&progress, PLAIN_INTERVAL, false, at(seconds))?))
+        };
+        assert_eq!(overdue(4.9), None);
+        assert_eq!(overdue(5.1).as_deref(), Some("0 % after 5 s, 0 pixels/s"));
+        assert_eq!((reported(7.0, 50), overdue(9.0)), (None, None));
+        assert_eq!(overdue(10.2).as_deref(), Some("50 % after 10 s, 10 s left, 49 kpixels/s"));
+        assert_eq!((reported(11.0, 50), reported(15.1, 50)), (None, None));
+        assert_eq!(overdue(20.0).as_deref(), Some("50 % after 20 s, 20 s left, 25 kpixels/s"));
+        assert!(reported(25.5, 60).is_some() && overdue(26.0).is_none());
     }
 
     #[test]

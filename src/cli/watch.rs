@@ -66,6 +66,8 @@ pub(crate) struct Watcher<'a> {
     pub(crate) stopping: &'a str,
     /// Tells the user.
     pub(crate) note: &'a (dyn Fn(&str) + Sync),
+    /// Tells how far it is, where nothing new has told that for long.
+    pub(crate) tick: &'a (dyn Fn() + Sync),
 }
 
 impl Watcher<'_> {
@@ -80,7 +82,9 @@ impl Watcher<'_> {
                 terminal.draw(self.job, self.course.percent());
                 drawn = Instant::now();
             }
-            if self.stop.load(Ordering::Relaxed) && !has_told {
+            if !self.stop.load(Ordering::Relaxed) {
+                (self.tick)();
+            } else if !has_told {
                 has_told = true;
                 (self.note)(self.stopping);
             }
