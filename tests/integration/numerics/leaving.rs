@@ -7,14 +7,13 @@
 
 use glam::DVec3;
 use whitted::geometry::{Ends, Ray, Shape, Surface};
-use whitted::math::Frame;
 
 use super::big::{Big, BigVec, big, big_vec};
 use super::everywhere::{any_subject, ray_towards};
 use super::oracle::{Answer, Crossing, UNIT};
 use super::random::{Random, rays};
 use super::score::{K_MAX, Tally, Verdict};
-use super::subject::{Question, Subject, vector};
+use super::subject::{Question, Subject, axes_about, vector};
 
 /// The number of the primitive.
 const SELF: u32 = 3;
@@ -22,10 +21,9 @@ const SELF: u32 = 3;
 /// The stored local point in the axes of the world, about the shape's anchor.
 fn turned_back(subject: &Subject, local: DVec3) -> BigVec {
     let Some(axis) = subject.axis() else { return big_vec(local) };
-    let scale = 1.0 / axis.abs().max_element();
-    let frame = Frame::around((axis * scale).normalize());
-    let part = |unit: DVec3, x: f64| big_vec(frame.to_world(unit)).scaled(&big(x));
-    part(DVec3::X, local.x).plus(&part(DVec3::Y, local.y)).plus(&part(DVec3::Z, local.z))
+    let [x, y, z] = axes_about(&axis);
+    let part = |axis: &BigVec, along: f64| axis.scaled(&big(along));
+    part(&x, local.x).plus(&part(&y, local.y)).plus(&part(&z, local.z))
 }
 
 /// The nearest point of the exact face.

@@ -47,22 +47,20 @@ fn max_abs(v: &BigVec) -> f64 {
     v.f64().abs().max_element()
 }
 
-/// Turns vectors into the frame of an axis: exactly, if that is a coordinate axis.
-fn axes_about(axis: &BigVec) -> [BigVec; 3] {
-    let unit = |k: usize| {
-        let mut components = [0.0; 3];
-        components[k] = 1.0;
-        BigVec(components.map(big))
+/// The axes of the frame about an axis, worked out anew: y is the axis; z is at right angles to it and to the coordinate axis
+/// that is furthest from it, of equally far ones x before z before y.
+pub(crate) fn axes_about(axis: &BigVec) -> [BigVec; 3] {
+    let far = |k: usize, than: usize| axis.0[k].abs() <= axis.0[than].abs();
+    let helper = if far(0, 1) && far(0, 2) {
+        DVec3::X
+    } else if far(2, 1) {
+        DVec3::Z
+    } else {
+        DVec3::Y
     };
-    let along: Vec<usize> = (0..3).filter(|k| !axis.0[*k].is_zero()).collect();
-    let y = axis.scaled(&(big(1.0) / axis.length()));
-    if let [k] = along[..] {
-        return [unit((k + 2) % 3), y, unit((k + 1) % 3)];
-    }
-    let x = unit(along[0]).cross(axis);
-    let x = x.scaled(&(big(1.0) / x.length()));
-    let z = x.cross(&y);
-    [x, y, z]
+    let unit = |v: &BigVec| v.scaled(&(big(1.0) / v.length()));
+    let (y, z) = (unit(axis), unit(&big_vec(helper).cross(axis)));
+    [y.cross(&z), y, z]
 }
 
 impl Subject {
@@ -96,7 +94,7 @@ impl Subject {
         }
     }
 
-    /// The local origin, the axis from the local origin's end (or its opposite for a cone), radius.
+    /// The local origin, the axis from base to top, radius.
     fn round_parts(&self) -> (DVec3, BigVec, f64) {
         match self {
             Self::Sphere { center, radius } => (*center, big_vec(DVec3::Y), *radius),
@@ -184,12 +182,8 @@ impl Subject {
     }
 
     /// The axis of a cylinder or cone, from base to top.
-    pub(crate) fn axis(&self) -> Option<DVec3> {
-        match self {
-            Self::Cylinder { base, top, .. } => Some(top - base),
-            Self::Cone { base, apex, .. } => Some(apex - base),
-            _ => None,
-        }
+    pub(crate) fn axis(&self) -> Option<BigVec> {
+        matches!(self, Self::Cylinder { .. } | Self::Cone { .. }).then(|| self.round_parts().1)
     }
 
     /// Whether the shape bounds a solid.
