@@ -210,7 +210,7 @@ fn pictures_stand_upright_on_sphere_and_quad() {
     assert_color(quad(-9.0, -1.0), texel_mean(269, 269), "quad, lower right");
 }
 
-/// Oracle: SCENE.md's normals in closed form, seen through the diffuse term of a light at the camera's side.
+/// Oracle: docs/scene.md's normals in closed form, seen through the diffuse term of a light at the camera's side.
 #[test]
 fn cylinder_and_cone_are_lit_by_their_normals() {
     let lit = |shape: &str| {

@@ -122,7 +122,7 @@ fn false_hits(name: &str, mesh: &Mesh, count: usize, middle: DVec3, size: DVec3)
     for _ in 0..count {
         // In a plane that supports the mesh, moved off by a millionth of its distance from the middle.
         let normal = random.direction() / size;
-        let height = |p: DVec3| normal.dot((p - middle) / 1.0);
+        let height = |p: DVec3| normal.dot(p - middle);
         let top = mesh.corners.iter().max_by(|p, q| height(**p).total_cmp(&height(**q)));
         let top = middle + (top.expect("a corner") - middle) * (1.0 + 1e-6);
         let dir = random.across(normal.normalize());

@@ -6,11 +6,11 @@
 //! change that a last place of every input explains (K), whose 99th percentile may be 4 and whose maximum 16. A
 //! failing ray prints as a test.
 //!
-//! `WHITTED_RAYS=n` multiplies the numbers of rays. The longer run, of 1e8 rays scored one by one against the oracles and as
-//! many again against answers by construction, with the table of families, is
+//! `WHITTED_RAYS=n` multiplies the numbers of rays. The longer run, of 1e8 rays scored one by one against the oracles and
+//! more than twice as many against answers by construction, with the table of families, is
 //!
 //! ```text
-//! WHITTED_RAYS=200 cargo test --release --test integration numerics -- --nocapture
+//! WHITTED_RAYS=250 cargo test --release --test integration numerics -- --nocapture
 //! ```
 
 mod big;
