@@ -3,9 +3,9 @@
 use glam::DVec3;
 use whitted::geometry::{Ends, Ray};
 
-use super::cylinder::on_circle;
-use super::random::{Random, rays, tenths};
-use super::score::{Tally, assert_right};
+use super::cylinder::{aspects, on_circle};
+use super::random::{Random, tenth};
+use super::score::{assert_right, sweep};
 use super::subject::Subject;
 
 struct Made {
@@ -38,23 +38,18 @@ fn any_cone(random: &mut Random) -> Made {
     Made { subject, apex, height: apex.y - base.y, radius }
 }
 
-fn sweep(family: &'static str, to: i32, mut make: impl FnMut(f64, &Made, &mut Random) -> Ray) {
-    let mut tally = Tally::new(family);
-    let mut random = Random::new(6);
-    for (k, severity) in tenths(to) {
-        tally.severity(&k);
-        for _ in 0..rays(1000) {
-            let made = any_cone(&mut random);
-            let ray = make(severity, &made, &mut random);
-            tally.score(&made.subject, ray);
-        }
-    }
-    tally.finish();
+/// Scores rays that `make` makes for cones, ever harder.
+fn cones(family: &'static str, mut make: impl FnMut(f64, &Made, &mut Random) -> Ray) {
+    sweep(family, 6, 1..=14, 1000, |k, random, tally| {
+        let made = any_cone(random);
+        let ray = make(tenth(k), &made, random);
+        tally.score(&made.subject, ray);
+    });
 }
 
 #[test]
 fn tangent() {
-    sweep("cone: tangent, relative miss 10^-k", 14, |miss, made, random| {
+    cones("cone: tangent, relative miss 10^-k", |miss, made, random| {
         let (out, generator) = made.generator(random);
         let normal = made.normal(out);
         let point = made.apex + generator * random.between(-0.1, 1.1);
@@ -68,7 +63,7 @@ fn tangent() {
 
 #[test]
 fn start_near_the_side() {
-    sweep("cone: start 10^-k r inside or outside", 14, |gap, made, random| {
+    cones("cone: start 10^-k r inside or outside", |gap, made, random| {
         let (out, generator) = made.generator(random);
         let offset = made.normal(out) * (made.radius * random.sign() * gap);
         Ray::new(made.apex + generator * random.between(-0.1, 1.1) + offset, random.direction())
@@ -77,7 +72,7 @@ fn start_near_the_side() {
 
 #[test]
 fn apex() {
-    sweep("cone: miss of the apex 10^-k", 14, |miss, made, random| {
+    cones("cone: miss of the apex 10^-k", |miss, made, random| {
         let target = made.apex + random.direction() * miss;
         let origin = made.apex + random.in_cube() * 4.0;
         Ray::new(origin, target - origin)
@@ -86,7 +81,7 @@ fn apex() {
 
 #[test]
 fn generator() {
-    sweep("cone: angle to a generator 10^-k", 14, |angle, made, random| {
+    cones("cone: angle to a generator 10^-k", |angle, made, random| {
         let (out, generator) = made.generator(random);
         let dir = (generator.normalize() + random.direction() * angle) * random.sign();
         let beside = made.normal(out) * random.between(-0.5, 0.5);
@@ -98,35 +93,28 @@ fn generator() {
 /// The doubles next to a generator of a cone whose slope is a ratio of integers.
 #[test]
 fn nearest_double_to_a_generator() {
-    let mut tally = Tally::new("cone: k doubles beside a generator");
-    let mut random = Random::new(7);
-    for k in 0..=4 {
-        tally.severity(&k);
-        for _ in 0..rays(1000) {
-            let (radius, height) = (3.0, 4.0);
-            let ends = random.pick(&[Ends::Open, Ends::Closed]);
-            let (base, apex) = (DVec3::ZERO, DVec3::Y * height);
-            let subject = Subject::Cone { base, apex, radius, ends };
-            let nudge = |x: f64, up: bool| {
-                (0..k).fold(x, |x, _| if up { x.next_up() } else { x.next_down() })
-            };
-            let down = nudge(-height, random.flip());
-            let dir = random.pick(&[
-                DVec3::new(radius, down, 0.0),
-                DVec3::new(0.0, down, -radius),
-                DVec3::new(-1.8, down, 2.4),
-            ]);
-            let origin = apex + random.in_cube() * 2.0 - dir * random.between(0.0, 3.0);
-            tally.score(&subject, Ray::new(origin, dir));
-        }
-    }
-    tally.finish();
+    sweep("cone: k doubles beside a generator", 7, 0..=4, 1000, |k, random, tally| {
+        let (radius, height) = (3.0, 4.0);
+        let ends = random.pick(&[Ends::Open, Ends::Closed]);
+        let (base, apex) = (DVec3::ZERO, DVec3::Y * height);
+        let subject = Subject::Cone { base, apex, radius, ends };
+        let nudge =
+            |x: f64, up: bool| (0..k).fold(x, |x, _| if up { x.next_up() } else { x.next_down() });
+        let down = nudge(-height, random.flip());
+        let dir = random.pick(&[
+            DVec3::new(radius, down, 0.0),
+            DVec3::new(0.0, down, -radius),
+            DVec3::new(-1.8, down, 2.4),
+        ]);
+        let origin = apex + random.in_cube() * 2.0 - dir * random.between(0.0, 3.0);
+        tally.score(&subject, Ray::new(origin, dir));
+    });
 }
 
 /// Rays that meet the mirror image of the cone above its apex.
 #[test]
 fn phantom_nappe() {
-    sweep("cone: through the upper nappe, 10^-k above", 14, |above, made, random| {
+    cones("cone: through the upper nappe, 10^-k above", |above, made, random| {
         let (_, generator) = made.generator(random);
         let target = made.apex - generator * above + random.direction() * (above * random.unit());
         let origin = made.apex + random.in_cube() * 3.0;
@@ -136,7 +124,7 @@ fn phantom_nappe() {
 
 #[test]
 fn rim() {
-    sweep("cone: aimed 10^-k from the rim", 14, |miss, made, random| {
+    cones("cone: aimed 10^-k from the rim", |miss, made, random| {
         let (_, generator) = made.generator(random);
         let target = made.apex + generator + random.direction() * miss;
         let origin = made.apex + random.in_cube() * 4.0;
@@ -144,24 +132,15 @@ fn rim() {
     });
 }
 
-/// Needles and plates.
 #[test]
 fn aspect() {
-    let mut tally = Tally::new("cone: radius/height 10^k");
-    let mut random = Random::new(8);
-    for k in (-8..=8).step_by(2) {
-        tally.severity(&k);
-        for _ in 0..rays(1000) {
-            let (height, radius) = (1.0, 10.0_f64.powi(k));
-            let size = DVec3::new(radius, height, radius);
-            let ends = random.pick(&[Ends::Open, Ends::Closed]);
-            let subject = Subject::Cone { base: DVec3::ZERO, apex: DVec3::Y, radius, ends };
-            let target = random.in_cube() * size * 1.1;
-            let origin = random.in_cube() * size * 3.0 + random.in_cube() * size.max_element();
-            tally.score(&subject, Ray::new(origin, target - origin));
-        }
-    }
-    tally.finish();
+    let (base, apex) = (DVec3::ZERO, DVec3::Y);
+    aspects("cone: radius/height 10^k", 8, |radius, ends| Subject::Cone {
+        base,
+        apex,
+        radius,
+        ends,
+    });
 }
 
 /// A ray exactly parallel to a generator has one root; here that is on the upper nappe, and the cone itself is missed.

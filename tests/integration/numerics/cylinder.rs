@@ -3,8 +3,8 @@
 use glam::DVec3;
 use whitted::geometry::{Ends, Ray};
 
-use super::random::{Random, rays, tenths};
-use super::score::Tally;
+use super::random::{Random, tenth};
+use super::score::sweep;
 use super::subject::Subject;
 
 /// The unit circle's point in the plane of x and z.
@@ -30,23 +30,18 @@ fn any_cylinder(random: &mut Random) -> Made {
     Made { subject, base, height: top.y - base.y, radius }
 }
 
-fn sweep(family: &'static str, to: i32, mut make: impl FnMut(f64, &Made, &mut Random) -> Ray) {
-    let mut tally = Tally::new(family);
-    let mut random = Random::new(4);
-    for (k, severity) in tenths(to) {
-        tally.severity(&k);
-        for _ in 0..rays(1000) {
-            let made = any_cylinder(&mut random);
-            let ray = make(severity, &made, &mut random);
-            tally.score(&made.subject, ray);
-        }
-    }
-    tally.finish();
+/// Scores rays that `make` makes for cylinders, ever harder.
+fn cylinders(family: &'static str, mut make: impl FnMut(f64, &Made, &mut Random) -> Ray) {
+    sweep(family, 4, 1..=14, 1000, |k, random, tally| {
+        let made = any_cylinder(random);
+        let ray = make(tenth(k), &made, random);
+        tally.score(&made.subject, ray);
+    });
 }
 
 #[test]
 fn tangent() {
-    sweep("cylinder: tangent, relative miss 10^-k", 14, |miss, made, random| {
+    cylinders("cylinder: tangent, relative miss 10^-k", |miss, made, random| {
         let normal = on_circle(random);
         let along = normal.cross(DVec3::Y);
         let dir = (along + DVec3::Y * random.between(-0.5, 0.5)).normalize();
@@ -58,7 +53,7 @@ fn tangent() {
 
 #[test]
 fn start_near_the_side() {
-    sweep("cylinder: start 10^-k r inside or outside", 14, |gap, made, random| {
+    cylinders("cylinder: start 10^-k r inside or outside", |gap, made, random| {
         let out = on_circle(random) * made.radius * (1.0 + random.sign() * gap);
         let origin = made.base + out + DVec3::Y * made.height * random.between(-0.1, 1.1);
         Ray::new(origin, random.direction())
@@ -67,7 +62,7 @@ fn start_near_the_side() {
 
 #[test]
 fn nearly_parallel() {
-    sweep("cylinder: angle to the axis 10^-k", 14, |angle, made, random| {
+    cylinders("cylinder: angle to the axis 10^-k", |angle, made, random| {
         let out = on_circle(random) * (made.radius * random.between(0.0, 1.2));
         let dir = (DVec3::Y + on_circle(random) * angle) * random.sign();
         Ray::new(made.base + out - dir * random.between(-1.0, 5.0), dir)
@@ -76,7 +71,7 @@ fn nearly_parallel() {
 
 #[test]
 fn parallel() {
-    sweep("cylinder: parallel to the axis, 10^-k r from the side", 14, |gap, made, random| {
+    cylinders("cylinder: parallel to the axis, 10^-k r from the side", |gap, made, random| {
         let out = on_circle(random) * made.radius * (1.0 + random.sign() * gap);
         let dir = DVec3::new(random.sign() * 0.0, random.sign(), random.sign() * 0.0);
         Ray::new(made.base + out - dir * random.between(-1.0, 5.0), dir)
@@ -85,7 +80,7 @@ fn parallel() {
 
 #[test]
 fn rim() {
-    sweep("cylinder: aimed 10^-k from the rim", 14, |miss, made, random| {
+    cylinders("cylinder: aimed 10^-k from the rim", |miss, made, random| {
         let end = made.height * f64::from(u8::from(random.flip()));
         let rim = made.base + on_circle(random) * made.radius + DVec3::Y * end;
         let target = rim + random.direction() * miss;
@@ -94,22 +89,25 @@ fn rim() {
     });
 }
 
-/// Needles and coins.
+/// Scores rays at needles and coins: `subject` has this radius, and its axis goes from the origin to (0, 1, 0).
+pub(crate) fn aspects(family: &'static str, seed: u64, subject: impl Fn(f64, Ends) -> Subject) {
+    sweep(family, seed, (-8..=8).step_by(2), 1000, |k, random, tally| {
+        let (height, radius) = (1.0, 10.0_f64.powi(k));
+        let size = DVec3::new(radius, height, radius);
+        let subject = subject(radius, random.pick(&[Ends::Open, Ends::Closed]));
+        let target = random.in_cube() * size * 1.1;
+        let origin = random.in_cube() * size * 3.0 + random.in_cube() * size.max_element();
+        tally.score(&subject, Ray::new(origin, target - origin));
+    });
+}
+
 #[test]
 fn aspect() {
-    let mut tally = Tally::new("cylinder: radius/height 10^k");
-    let mut random = Random::new(5);
-    for k in (-8..=8).step_by(2) {
-        tally.severity(&k);
-        for _ in 0..rays(1000) {
-            let (height, radius) = (1.0, 10.0_f64.powi(k));
-            let size = DVec3::new(radius, height, radius);
-            let ends = random.pick(&[Ends::Open, Ends::Closed]);
-            let subject = Subject::Cylinder { base: DVec3::ZERO, top: DVec3::Y, radius, ends };
-            let target = random.in_cube() * size * 1.1;
-            let origin = random.in_cube() * size * 3.0 + random.in_cube() * size.max_element();
-            tally.score(&subject, Ray::new(origin, target - origin));
-        }
-    }
-    tally.finish();
+    let (base, top) = (DVec3::ZERO, DVec3::Y);
+    aspects("cylinder: radius/height 10^k", 5, |radius, ends| Subject::Cylinder {
+        base,
+        top,
+        radius,
+        ends,
+    });
 }

@@ -3,8 +3,8 @@
 use glam::DVec3;
 use whitted::geometry::{Ends, Ray};
 
-use super::random::{Random, rays};
-use super::score::Tally;
+use super::random::Random;
+use super::score::sweep;
 use super::subject::Subject;
 
 /// A convex outline on integers.
@@ -59,69 +59,51 @@ pub(crate) fn ray_towards(subject: &Subject, distance: f64, random: &mut Random)
     Ray::new(origin, target - origin)
 }
 
-/// Runs `rays_each` rays for each severity, made by `make`.
-fn sweep<S: Copy + ToString>(
-    family: &'static str,
-    severities: impl IntoIterator<Item = S>,
-    rays_each: usize,
-    mut make: impl FnMut(S, &mut Random) -> (Subject, Ray),
-) {
-    let mut tally = Tally::new(family);
-    let mut random = Random::new(0x5eed);
-    for severity in severities {
-        tally.severity(&severity);
-        for _ in 0..rays(rays_each) {
-            let (subject, ray) = make(severity, &mut random);
-            tally.score(&subject, ray);
-        }
-    }
-    tally.finish();
-}
-
 #[test]
 fn scale() {
     let exponents = (-6..=6).map(|k| k * 83);
-    sweep("every shape: scale 2^k", exponents, 1200, |k, random| {
+    sweep("every shape: scale 2^k", 0x5eed, exponents, 1200, |k, random, tally| {
         let subject = any_subject(random);
         let ray = ray_towards(&subject, random.between(0.0, 4.0), random);
         let scale = 2.0_f64.powi(k);
-        (subject.placed(DVec3::ZERO, scale), Ray::new(ray.origin * scale, ray.dir))
+        tally.score(&subject.placed(DVec3::ZERO, scale), Ray::new(ray.origin * scale, ray.dir));
     });
 }
 
 #[test]
 fn direction_length() {
     let exponents = (-6..=6).map(|k| k * 25);
-    sweep("every shape: |d| = 10^k", exponents, 800, |k, random| {
+    sweep("every shape: |d| = 10^k", 0x5eed, exponents, 800, |k, random, tally| {
         let subject = any_subject(random);
         let ray = ray_towards(&subject, random.between(0.0, 4.0), random);
-        (subject, Ray::new(ray.origin, ray.dir.normalize() * 10.0_f64.powi(k)))
+        tally.score(&subject, Ray::new(ray.origin, ray.dir.normalize() * 10.0_f64.powi(k)));
     });
 }
 
 /// Powers of two, so that the shape moves without rounding.
 #[test]
 fn translation() {
-    sweep("every shape: shifted by 2^k sizes", (0..=40).step_by(4), 1000, |k, random| {
+    let exponents = (0..=40).step_by(4);
+    sweep("every shape: shifted by 2^k sizes", 0x5eed, exponents, 1000, |k, random, tally| {
         let subject = any_subject(random);
         let ray = ray_towards(&subject, random.between(0.0, 4.0), random);
         let shift = DVec3::new(1.0, -1.0, 1.0) * 2.0_f64.powi(k);
-        (subject.placed(shift, 1.0), Ray::new(ray.origin + shift, ray.dir))
+        tally.score(&subject.placed(shift, 1.0), Ray::new(ray.origin + shift, ray.dir));
     });
 }
 
 #[test]
 fn distance() {
-    sweep("every shape: distance/size 10^k", 1..=12, 1000, |k, random| {
+    sweep("every shape: distance/size 10^k", 0x5eed, 1..=12, 1000, |k, random, tally| {
         let subject = any_subject(random);
         let ray = ray_towards(&subject, 10.0_f64.powi(k), random);
-        (subject, ray)
+        tally.score(&subject, ray);
     });
 }
 
 #[test]
 fn pebble() {
-    sweep("every shape: size 10^-k in a unit scene", 1..=12, 1000, |k, random| {
+    sweep("every shape: size 10^-k in a unit scene", 0x5eed, 1..=12, 1000, |k, random, tally| {
         let subject = any_subject(random);
         let shift = (random.on_grid() * 10.0_f64.powi(k)).round();
         let scale = 2.0_f64.powi((-3.322 * f64::from(k)).round() as i32);
@@ -129,6 +111,6 @@ fn pebble() {
         let (center, size) = ball(&subject);
         let origin = random.in_cube();
         let target = center + random.in_cube() * size * 0.6;
-        (subject, Ray::new(origin, target - origin))
+        tally.score(&subject, Ray::new(origin, target - origin));
     });
 }

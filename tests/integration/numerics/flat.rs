@@ -3,8 +3,8 @@
 use glam::DVec3;
 use whitted::geometry::Ray;
 
-use super::random::{Random, rays, tenths};
-use super::score::Tally;
+use super::random::{Random, tenth};
+use super::score::sweep;
 use super::subject::Subject;
 
 /// A point of the plane and its edges: q + u e₁ + v e₂.
@@ -40,23 +40,18 @@ fn flat(corner: DVec3, edge1: DVec3, edge2: DVec3, random: &mut Random) -> Made 
     Made { subject, corner, edge1, edge2 }
 }
 
-fn sweep(family: &'static str, to: i32, mut make: impl FnMut(f64, &Made, &mut Random) -> Ray) {
-    let mut tally = Tally::new(family);
-    let mut random = Random::new(9);
-    for (k, severity) in tenths(to) {
-        tally.severity(&k);
-        for _ in 0..rays(1000) {
-            let made = any_flat(&mut random);
-            let ray = make(severity, &made, &mut random);
-            tally.score(&made.subject, ray);
-        }
-    }
-    tally.finish();
+/// Scores rays that `make` makes for quads and triangles, ever harder.
+fn flats(family: &'static str, mut make: impl FnMut(f64, &Made, &mut Random) -> Ray) {
+    sweep(family, 9, 1..=14, 1000, |k, random, tally| {
+        let made = any_flat(random);
+        let ray = make(tenth(k), &made, random);
+        tally.score(&made.subject, ray);
+    });
 }
 
 #[test]
 fn grazing() {
-    sweep("quad, triangle: grazing at 10^-k", 14, |angle, made, random| {
+    flats("quad, triangle: grazing at 10^-k", |angle, made, random| {
         let normal = made.normal();
         let dir = random.across(normal) + normal * (angle * random.sign());
         let target = made.at(random.between(-0.1, 1.1), random.between(-0.1, 1.1));
@@ -66,7 +61,7 @@ fn grazing() {
 
 #[test]
 fn edges() {
-    sweep("quad, triangle: aimed 10^-k from an edge", 14, |miss, made, random| {
+    flats("quad, triangle: aimed 10^-k from an edge", |miss, made, random| {
         let along = random.between(-0.1, 1.1);
         let target = match random.below(3) {
             0 => made.at(along, miss * random.sign()),
@@ -80,53 +75,41 @@ fn edges() {
 
 #[test]
 fn slivers() {
-    let mut tally = Tally::new("quad, triangle: slivers of width 10^-k");
-    let mut random = Random::new(10);
-    for (k, _) in tenths(12) {
-        tally.severity(&k);
-        for _ in 0..rays(1000) {
-            // A width on the grid of 2⁻⁵⁰, so that the quad's corners are exact.
-            let width = 2.0_f64.powi((-3.322 * f64::from(k)).round() as i32);
-            let [corner, edge1] = [(); 2].map(|()| random.on_grid());
-            let edge2 = edge1 * f64::from(u8::from(random.flip())) + random.on_grid() * width;
-            let made = flat(corner, edge1, edge2, &mut random);
-            let target = made.at(random.between(-0.1, 1.1), random.between(-0.1, 1.1));
-            let origin = made.corner + random.in_cube() * 4.0;
-            tally.score(&made.subject, Ray::new(origin, target - origin));
-        }
-    }
-    tally.finish();
+    sweep("quad, triangle: slivers of width 10^-k", 10, 1..=12, 1000, |k, random, tally| {
+        // A width on the grid of 2⁻⁵⁰, so that the quad's corners are exact.
+        let width = 2.0_f64.powi((-3.322 * f64::from(k)).round() as i32);
+        let [corner, edge1] = [(); 2].map(|()| random.on_grid());
+        let edge2 = edge1 * f64::from(u8::from(random.flip())) + random.on_grid() * width;
+        let made = flat(corner, edge1, edge2, random);
+        let target = made.at(random.between(-0.1, 1.1), random.between(-0.1, 1.1));
+        let origin = made.corner + random.in_cube() * 4.0;
+        tally.score(&made.subject, Ray::new(origin, target - origin));
+    });
 }
 
 /// Rays along a coordinate axis, with zeros of both signs, at faces square to it and in their very plane.
 #[test]
 fn axis_rays() {
-    let mut tally = Tally::new("quad, triangle: axis rays with ±0");
-    let mut random = Random::new(11);
-    for name in ["square", "slanted", "in plane"] {
-        tally.severity(&name);
-        for _ in 0..rays(2000) {
-            let axis = random.below(3);
-            let turn = |v: [f64; 3]| DVec3::from_array([0, 1, 2].map(|k| v[(k + axis) % 3]));
-            let cell = |random: &mut Random| random.on_grid().x;
-            let corner = random.on_grid();
-            let (a, b) = (cell(&mut random).abs() + 0.25, cell(&mut random).abs() + 0.25);
-            let tilt = if name == "slanted" { cell(&mut random) } else { 0.0 };
-            let (edge1, edge2) = (turn([a, 0.0, tilt]), turn([0.0, b, 0.0]));
-            let made = flat(corner, edge1, edge2, &mut random);
-            let zero = |random: &mut Random| 0.0 * random.sign();
-            let (z1, z2) = (zero(&mut random), zero(&mut random));
-            let (u, v) = (random.between(-0.2, 1.2), random.between(-0.2, 1.2));
-            let dir = if name == "in plane" {
-                turn([random.sign(), z1, z2])
-            } else {
-                turn([z1, z2, random.sign()])
-            };
-            let beside =
-                turn([0.0, 0.0, random.sign() * 10.0_f64.powf(random.between(-16.0, 0.0))]);
-            let origin = made.at(u, v) - dir * random.between(-2.0, 2.0) + beside;
-            tally.score(&made.subject, Ray::new(origin, dir));
-        }
-    }
-    tally.finish();
+    let directions = ["square", "slanted", "in plane"];
+    sweep("quad, triangle: axis rays with ±0", 11, directions, 2000, |name, random, tally| {
+        let axis = random.below(3);
+        let turn = |v: [f64; 3]| DVec3::from_array([0, 1, 2].map(|k| v[(k + axis) % 3]));
+        let cell = |random: &mut Random| random.on_grid().x;
+        let corner = random.on_grid();
+        let (a, b) = (cell(random).abs() + 0.25, cell(random).abs() + 0.25);
+        let tilt = if name == "slanted" { cell(random) } else { 0.0 };
+        let (edge1, edge2) = (turn([a, 0.0, tilt]), turn([0.0, b, 0.0]));
+        let made = flat(corner, edge1, edge2, random);
+        let zero = |random: &mut Random| 0.0 * random.sign();
+        let (z1, z2) = (zero(random), zero(random));
+        let (u, v) = (random.between(-0.2, 1.2), random.between(-0.2, 1.2));
+        let dir = if name == "in plane" {
+            turn([random.sign(), z1, z2])
+        } else {
+            turn([z1, z2, random.sign()])
+        };
+        let beside = turn([0.0, 0.0, random.sign() * 10.0_f64.powf(random.between(-16.0, 0.0))]);
+        let origin = made.at(u, v) - dir * random.between(-2.0, 2.0) + beside;
+        tally.score(&made.subject, Ray::new(origin, dir));
+    });
 }

@@ -11,8 +11,8 @@ use whitted::geometry::{Ends, Ray, Shape, Surface};
 use super::big::{Big, BigVec, big, big_vec};
 use super::everywhere::{any_subject, ray_towards};
 use super::oracle::{Answer, Crossing, UNIT};
-use super::random::{Random, rays};
-use super::score::{K_MAX, Tally, Verdict};
+use super::random::Random;
+use super::score::{K_MAX, Tally, Verdict, sweep};
 use super::subject::{Question, Subject, axes_about, vector};
 
 /// The number of the primitive.
@@ -190,50 +190,34 @@ fn leave_once(
 
 #[test]
 fn angles() {
-    let mut tally = Tally::new("leaving every shape at 10^-k rad");
-    let mut random = Random::new(12);
-    for k in 0..=12 {
-        tally.severity(&k);
-        for _ in 0..rays(4000) {
-            let angle = 10.0_f64.powi(-k);
-            leave_once(&mut tally, angle, &mut random, |subject, ray, _| (subject.clone(), *ray));
-        }
-    }
-    tally.finish();
+    sweep("leaving every shape at 10^-k rad", 12, 0..=12, 4000, |k, random, tally| {
+        let angle = 10.0_f64.powi(-k);
+        leave_once(tally, angle, random, |subject, ray, _| (subject.clone(), *ray));
+    });
 }
 
 #[test]
 fn scales() {
-    let mut tally = Tally::new("leaving every shape, scale 2^k");
-    let mut random = Random::new(13);
-    for k in (-6..=6).map(|k| k * 83) {
-        tally.severity(&k);
+    let exponents = (-6..=6).map(|k| k * 83);
+    sweep("leaving every shape, scale 2^k", 13, exponents, 4000, |k, random, tally| {
         let scale = 2.0_f64.powi(k);
-        for _ in 0..rays(4000) {
-            let angle = 10.0_f64.powf(random.between(-12.0, 0.0));
-            leave_once(&mut tally, angle, &mut random, |subject, ray, _| {
-                (subject.placed(DVec3::ZERO, scale), Ray::new(ray.origin * scale, ray.dir * scale))
-            });
-        }
-    }
-    tally.finish();
+        let angle = 10.0_f64.powf(random.between(-12.0, 0.0));
+        leave_once(tally, angle, random, |subject, ray, _| {
+            (subject.placed(DVec3::ZERO, scale), Ray::new(ray.origin * scale, ray.dir * scale))
+        });
+    });
 }
 
 #[test]
 fn shifts() {
-    let mut tally = Tally::new("leaving every shape, shifted by 2^k sizes");
-    let mut random = Random::new(14);
-    for k in (0..=40).step_by(4) {
-        tally.severity(&k);
+    let exponents = (0..=40).step_by(4);
+    sweep("leaving every shape, shifted by 2^k sizes", 14, exponents, 4000, |k, random, tally| {
         let shift = DVec3::new(-1.0, 1.0, 1.0) * 2.0_f64.powi(k);
-        for _ in 0..rays(4000) {
-            let angle = 10.0_f64.powf(random.between(-12.0, 0.0));
-            leave_once(&mut tally, angle, &mut random, |subject, ray, _| {
-                (subject.placed(shift, 1.0), Ray::new(ray.origin + shift, ray.dir))
-            });
-        }
-    }
-    tally.finish();
+        let angle = 10.0_f64.powf(random.between(-12.0, 0.0));
+        leave_once(tally, angle, random, |subject, ray, _| {
+            (subject.placed(shift, 1.0), Ray::new(ray.origin + shift, ray.dir))
+        });
+    });
 }
 
 /// A printed failure can be pasted and repeated.

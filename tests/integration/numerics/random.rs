@@ -79,7 +79,7 @@ pub(crate) fn rays(count: usize) -> usize {
     (count as f64 * factor).ceil() as usize
 }
 
-/// 10⁻¹ to 10⁻ⁿ: how hard a family is.
-pub(crate) fn tenths(n: i32) -> impl Iterator<Item = (i32, f64)> {
-    (1..=n).map(|k| (k, 10.0_f64.powi(-k)))
+/// 10⁻ᵏ: how hard a family is.
+pub(crate) fn tenth(k: i32) -> f64 {
+    10.0_f64.powi(-k)
 }

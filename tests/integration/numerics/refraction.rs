@@ -8,8 +8,8 @@ use whitted::geometry::{reflect, refract};
 
 use super::big::{Big, BigVec, big, big_vec};
 use super::oracle::{Answer, UNIT};
-use super::random::{Random, rays, tenths};
-use super::score::{K_MAX, Tally, Verdict};
+use super::random::{Random, rays, tenth};
+use super::score::{K_MAX, Verdict, sweep};
 use super::subject::{number, vector};
 
 struct Case {
@@ -77,22 +77,17 @@ fn at_sine(sine: f64, random: &mut Random) -> (DVec3, DVec3) {
     (dir.normalize(), normal)
 }
 
-fn sweep(family: &'static str, to: i32, mut make: impl FnMut(f64, &mut Random) -> Case) {
-    let mut tally = Tally::new(family);
-    let mut random = Random::new(22);
-    for (k, severity) in tenths(to) {
-        tally.severity(&k);
-        for _ in 0..rays(1000) {
-            let case = make(severity, &mut random);
-            tally.record(case.judge(), || case.code());
-        }
-    }
-    tally.finish();
+/// Judges the cases that `make` makes, ever harder.
+fn cases(family: &'static str, to: i32, mut make: impl FnMut(f64, &mut Random) -> Case) {
+    sweep(family, 22, 1..=to, 1000, |k, random, tally| {
+        let case = make(tenth(k), random);
+        tally.record(case.judge(), || case.code());
+    });
 }
 
 #[test]
 fn critical_angle() {
-    sweep("refraction: critical angle ± 10^-k", 14, |off, random| {
+    cases("refraction: critical angle ± 10^-k", 14, |off, random| {
         let (from, to) = (random.between(1.1, 2.5), 1.0);
         let angle = (to / from).asin() + random.sign() * off;
         let normal = random.direction();
@@ -103,7 +98,7 @@ fn critical_angle() {
 
 #[test]
 fn nearly_equal_indices() {
-    sweep("refraction: index 1 ± 10^-k", 15, |off, random| {
+    cases("refraction: index 1 ± 10^-k", 15, |off, random| {
         let sine = random.pick(&[0.0, 0.5, 0.9, 0.999, 0.999_999]);
         let (dir, normal) = at_sine(sine, random);
         Case { dir, normal, from: 1.0, to: 1.0 + random.sign() * off }
@@ -112,7 +107,7 @@ fn nearly_equal_indices() {
 
 #[test]
 fn grazing() {
-    sweep("refraction: grazing at 10^-k", 14, |angle, random| {
+    cases("refraction: grazing at 10^-k", 14, |angle, random| {
         let normal = random.direction();
         let dir = (random.across(normal) - normal * angle).normalize();
         let (from, to) = random.pick(&[(1.0, 1.5), (1.5, 1.0), (1.0, 1.000_001), (2.4, 2.4001)]);
@@ -122,7 +117,7 @@ fn grazing() {
 
 #[test]
 fn normal_incidence() {
-    sweep("refraction: 10^-k rad off the normal", 14, |angle, random| {
+    cases("refraction: 10^-k rad off the normal", 14, |angle, random| {
         let (dir, normal) = at_sine(angle.sin(), random);
         let (from, to) = random.pick(&[(1.0, 1.5), (1.5, 1.0), (1.0, 1.000_001), (2.4, 2.4001)]);
         Case { dir, normal, from, to }

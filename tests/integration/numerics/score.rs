@@ -6,6 +6,7 @@ use glam::DVec3;
 use whitted::geometry::{Ray, Shape, Similarity};
 
 use super::oracle::Answer;
+use super::random::{Random, rays};
 use super::subject::{Subject, vector};
 use super::surface;
 
@@ -117,12 +118,12 @@ pub(crate) struct Tally {
 }
 
 impl Tally {
-    pub(crate) fn new(family: &'static str) -> Self {
+    fn new(family: &'static str) -> Self {
         Self { family, rows: vec![], failures: vec![] }
     }
 
     /// Starts the row of a severity.
-    pub(crate) fn severity(&mut self, name: &dyn ToString) {
+    fn severity(&mut self, name: &dyn ToString) {
         self.rows.push(Row {
             name: name.to_string(),
             rays: 0,
@@ -171,7 +172,7 @@ impl Tally {
     }
 
     /// Prints the table and fails on a wrong answer, on a bar of K, or if too little was scored to tell.
-    pub(crate) fn finish(self) {
+    fn finish(self) {
         let mut table = String::new();
         let (mut rays, mut scored, mut crossed, mut wrong, mut k_99, mut k_max) =
             (0, 0, 0, 0, 0.0_f64, 0.0_f64);
@@ -208,6 +209,25 @@ impl Tally {
         assert!(k_99 <= K_99, "{}: K of 99 % is {k_99}\n{table}", self.family);
         assert!(scored * 10 >= rays, "{}: only {scored} of {rays} scored\n{table}", self.family);
     }
+}
+
+/// The tally of a family: `count` rays for each severity, which `once` makes and scores.
+pub(crate) fn sweep<S: Copy + ToString>(
+    family: &'static str,
+    seed: u64,
+    severities: impl IntoIterator<Item = S>,
+    count: usize,
+    mut once: impl FnMut(S, &mut Random, &mut Tally),
+) {
+    let mut tally = Tally::new(family);
+    let mut random = Random::new(seed);
+    for severity in severities {
+        tally.severity(&severity);
+        for _ in 0..rays(count) {
+            once(severity, &mut random, &mut tally);
+        }
+    }
+    tally.finish();
 }
 
 /// A failing ray as a test.
