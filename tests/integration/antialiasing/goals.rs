@@ -1,12 +1,13 @@
 //! Rendering to an error and to a time.
 
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use glam::DVec2;
 use whitted::Rgb;
 use whitted::film::Tile;
-use whitted::render::{Block, Goal, RenderOptions, Sink, render, render_blocks};
+use whitted::render::{Block, Goal, RenderOptions, Sink, Unfinished, render, render_blocks};
 use whitted::scene::load_builtin;
 
 use super::{Seen, picture_of};
@@ -31,12 +32,80 @@ fn an_error_is_reached_and_not_by_far() {
     }
 }
 
-/// The same picture comes from any way down the ladder to the same threshold.
+/// One ray in each pixel is less than 250 levels off.
 #[test]
 fn an_error_that_is_there_already_takes_no_more_rays() {
     let picture = picture_of(&rings, 64, "adaptive:0,1024", Goal::Error(250.0));
     assert!(picture.samples.iter().all(|&rays| rays == 1));
     assert_eq!(picture.outcome.per_ray, None);
+}
+
+/// Keeps a picture towards an error before every other step, to go on from, and its end.
+#[derive(Default)]
+struct Kept {
+    is_shown_again: AtomicBool,
+    wants: AtomicBool,
+    /// The rays through each pixel when it was shown.
+    looks: Mutex<Vec<Vec<u32>>>,
+    unfinished: Mutex<Option<Vec<u8>>>,
+    end: Mutex<Option<Block>>,
+}
+
+impl Sink for Kept {
+    fn put(&self, block: Block) {
+        *self.end.lock().expect("no panic") = Some(block);
+    }
+
+    fn show(&self, _: &Tile, _: &[Rgb], samples: &[u32]) {
+        self.looks.lock().expect("no panic").push(samples.to_vec());
+        // What was interrupted to be kept is shown again, and then takes its step.
+        self.wants.store(!self.is_shown_again.fetch_not(Ordering::Relaxed), Ordering::Relaxed);
+    }
+
+    fn wants_unfinished(&self) -> bool {
+        self.wants.load(Ordering::Relaxed)
+    }
+
+    fn keep(&self, unfinished: &Unfinished) {
+        let bytes = postcard::to_stdvec(unfinished).expect("in memory");
+        *self.unfinished.lock().expect("no panic") = Some(bytes);
+        self.wants.store(false, Ordering::Relaxed);
+    }
+
+    fn unfinished(&self) -> Option<Unfinished> {
+        let kept = self.unfinished.lock().expect("no panic");
+        kept.as_ref().map(|bytes| postcard::from_bytes(bytes).expect("what was kept"))
+    }
+}
+
+/// Oracle: the picture that goes to its error at once. The other one aims at larger errors on its way, and so takes other steps.
+#[test]
+fn any_way_to_the_same_threshold_gives_the_same_picture() {
+    let scene = load_builtin("assignment").expect("a scene");
+    let render_to = |goals: &[f64]| {
+        let sink = Kept::default();
+        for wanted in goals {
+            let options = RenderOptions {
+                size: Some([60, 40]),
+                aa: "adaptive:0,1024".parse().expect("a mode"),
+                goal: Goal::Error(*wanted),
+                ..RenderOptions::default()
+            };
+            render_blocks(&scene, &options, &sink).expect("rendered");
+        }
+        let end = sink.end.into_inner().expect("no panic").expect("a picture");
+        (sink.looks.into_inner().expect("no panic"), end)
+    };
+    for steps in [&[16.0, 8.0, 4.0][..], &[8.0, 4.0, 2.0, 1.0], &[4.0, 2.0, 1.0, 0.5]] {
+        let (direct, at_once) = render_to(&steps[steps.len() - 1..]);
+        let (looks, by_steps) = render_to(steps);
+        assert!(looks.iter().any(|look| !direct.contains(look)), "{steps:?}: another way");
+        assert!(at_once.outcome.per_ray.is_some(), "{steps:?}");
+        assert_eq!(by_steps.outcome, at_once.outcome, "{steps:?}");
+        assert_eq!(by_steps.account, at_once.account, "{steps:?}");
+        assert!(by_steps.samples == at_once.samples, "{steps:?}");
+        assert!(by_steps.colors == at_once.colors, "{steps:?}");
+    }
 }
 
 #[test]
