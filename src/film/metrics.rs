@@ -245,8 +245,6 @@ mod tests {
         let path = folder.path().join("picture.png");
         assert!(matches!(read_png_rgb8(&path), Err(ImageError::Read { .. })));
         assert!(matches!(read_png_rgb8(folder.path()), Err(ImageError::Read { .. })));
-        let palette = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/broken/image/palette_49.png");
-        assert!(matches!(read_png_rgb8(palette), Err(ImageError::Decode { .. })));
         RgbImage::new(50, 50).save(&path).expect("written");
         let whole = std::fs::read(&path).expect("readable");
         for damaged in [&b""[..], b"P6 1 1 255", &whole[..whole.len() / 2], &whole[..40]] {

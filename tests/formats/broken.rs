@@ -5,7 +5,9 @@
 
 use std::fmt::Write;
 
+use whitted::film::{ImageError, metrics::read_png_rgb8};
 use whitted::scene::{LoadOptions, Warning, load, obj::inspect_model};
+use whitted::texture::Image;
 
 use super::file;
 
@@ -89,4 +91,18 @@ fn neutral_files() {
 #[test]
 fn scene_files() {
     check("toml", 40, rendered);
+}
+
+/// Oracle: png 0.18.1 panics at a palette of 49 bytes, zune-jpeg 0.5.15 at a first component that is sampled less densely than the
+/// second.
+#[test]
+fn pictures_at_which_decoders_panic_are_errors() {
+    for name in ["palette_49.png", "sampling.jpg"] {
+        let path = file("tests/broken/image").join(name);
+        let bytes = std::fs::read(&path).expect(name);
+        let error = Image::decode(name, &bytes).expect_err(name).to_string();
+        assert!(error.contains(name), "{error}");
+        let as_picture = read_png_rgb8(&path);
+        assert!(matches!(as_picture, Err(ImageError::Decode { .. })), "{name}: {as_picture:?}");
+    }
 }
