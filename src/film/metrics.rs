@@ -189,8 +189,8 @@ mod tests {
         assert_eq!(opposite, Difference { rmse: 255.0, mean: 255.0, worst, share_over_8: 1.0 });
     }
 
-    /// Oracle: limits that follow from the definition, and a value from an independent program for constant pictures,
-    /// (2·100·120 + c₁)/(100² + 120² + c₁).
+    /// Oracle: limits that follow from the definition, and a closed form for two constant pictures: they do not vary, so that the factor
+    /// of contrast and structure is c₂/c₂, and (2·100·120 + c₁)/(100² + 120² + c₁) is left.
     #[test]
     fn similarity_is_one_for_equal_pictures_only() {
         let wave = |phase: u32| {
