@@ -1,22 +1,28 @@
 //! What the program says of itself: help, completion scripts, manual pages.
 #![cfg(feature = "cli")]
 
+#[path = "program/mod.rs"]
+mod program;
+
 use std::fs;
+use std::path::Path;
 use std::process::{Command, Output, Stdio};
+
+use program::{done, folder, said, text};
 
 const COMMANDS: [&str; 9] =
     ["render", "study", "compare", "inspect", "merge", "scenes", "view", "completions", "man"];
 
 fn run(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_whitted")).args(arguments).output().expect("the program runs")
+    program::run(Path::new("."), arguments)
 }
 
 /// Standard output of a run that ends well.
 #[track_caller]
-fn said(arguments: &[&str]) -> String {
+fn told(arguments: &[&str]) -> String {
     let output = run(arguments);
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).expect("UTF-8")
+    done(&output);
+    text(&output.stdout).to_owned()
 }
 
 /// The words of a help text that look like flags.
@@ -39,7 +45,7 @@ fn shell(name: &str, arguments: &[&str], script: &str) -> Option<Output> {
 
 #[test]
 fn the_first_screen_shows_what_people_start_with_and_every_command() {
-    let help = said(&["--help"]);
+    let help = told(&["--help"]);
     let screen: Vec<&str> = help.lines().take(24).collect();
     for command in ["render", "view", "scenes", "inspect", "study"] {
         let example = format!("  whitted {command}");
@@ -56,26 +62,26 @@ fn the_first_screen_shows_what_people_start_with_and_every_command() {
 #[test]
 fn every_command_tells_its_flags_and_examples() {
     for command in COMMANDS {
-        let help = said(&[command, "--help"]);
+        let help = told(&[command, "--help"]);
         assert!(help.contains("Examples:\n  whitted "), "{command}");
         assert!(flags(&help).contains(&"--help".to_owned()), "{command}");
         for line in help.lines() {
             assert!(line.chars().count() <= 125, "{command}: {line}");
         }
     }
-    assert!(flags(&said(&["render", "--help"])).len() > 20);
+    assert!(flags(&told(&["render", "--help"])).len() > 20);
 }
 
 /// Oracle: the help texts, and the shells themselves.
 #[test]
 fn scripts_complete_every_command_and_flag() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     for name in ["bash", "zsh", "fish", "elvish", "powershell"] {
-        let script = said(&["completions", name]);
+        let script = told(&["completions", name]);
         for command in COMMANDS {
             assert!(script.contains(command), "{name}: {command}");
         }
-        for flag in flags(&said(&["render", "--help"])) {
+        for flag in flags(&told(&["render", "--help"])) {
             let word = if name == "fish" { &flag[2..] } else { &flag };
             assert!(script.contains(word), "{name}: {flag}");
         }
@@ -94,9 +100,9 @@ fn scripts_complete_every_command_and_flag() {
 #[cfg(unix)]
 #[test]
 fn bash_completes_words() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let path = folder.path().join("whitted.bash");
-    fs::write(&path, said(&["completions", "bash"])).expect("written");
+    fs::write(&path, told(&["completions", "bash"])).expect("written");
     let complete = |line: &str| {
         let words: Vec<&str> = line.split(' ').collect();
         let script = format!(
@@ -119,19 +125,19 @@ fn bash_completes_words() {
 /// Oracle: mandoc and groff read the pages without a warning, where they are.
 #[test]
 fn manual_pages_hold_every_command_and_flag() {
-    let main = said(&["man"]);
+    let main = told(&["man"]);
     let unescaped = |page: &str| page.replace("\\-", "-");
     for command in COMMANDS {
         assert!(unescaped(&main).contains(command), "{command}");
-        let page = said(&["man", command]);
+        let page = told(&["man", command]);
         assert!(page.contains(".SH NAME") && page.contains(".SH SYNOPSIS"), "{command}");
-        for flag in flags(&said(&[command, "--help"])) {
+        for flag in flags(&told(&[command, "--help"])) {
             assert!(unescaped(&page).contains(&flag), "{command}: {flag}");
         }
     }
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let pages = folder.path().join("share/man/man1");
-    said(&["man", "--folder", pages.to_str().expect("UTF-8")]);
+    told(&["man", "--folder", pages.to_str().expect("UTF-8")]);
     let names = fs::read_dir(&pages).expect("made").map(|entry| entry.expect("an entry").path());
     let names: Vec<_> = names.collect();
     assert_eq!(names.len(), 1 + COMMANDS.len(), "{names:?}");
@@ -145,5 +151,5 @@ fn manual_pages_hold_every_command_and_flag() {
     }
     let wrong = run(&["man", "rendr"]);
     assert_eq!(wrong.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&wrong.stderr).contains("choose one of render, "));
+    assert!(said(&wrong).contains("choose one of render, "));
 }

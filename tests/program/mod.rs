@@ -1,4 +1,5 @@
 //! The program, run in a folder of its own: what the tests of the command line share.
+#![allow(dead_code, reason = "each binary of tests needs some of it")]
 
 use std::fs;
 use std::path::Path;

@@ -1,36 +1,34 @@
 //! The program itself, on files.
 
-use std::process::{Command, Output};
+use std::path::Path;
+use std::process::Output;
 
 use super::file;
+use super::program::{done, folder, json, read, run, said, text};
 
-fn whitted(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_whitted")).args(args).output().expect("runs")
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
+fn whitted(arguments: &[&str]) -> Output {
+    run(Path::new("."), arguments)
 }
 
 /// Oracle: the built-in scene itself.
 #[test]
 fn the_printed_assignment_renders_alike() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let path = |name: &str| folder.path().join(name).display().to_string();
     let text = whitted(&["scenes", "--show", "assignment"]).stdout;
     std::fs::write(path("copy.toml"), text).expect("written");
     let flags = ["--size", "90x90", "--quiet", "-o"];
     let picture = |scene: &str, name: &str| {
         let output = whitted(&[&["render", scene], &flags[..], &[&path(name)]].concat());
-        assert!(output.status.success(), "{}", stderr(&output));
-        std::fs::read(path(name)).expect("a picture")
+        done(&output);
+        read(folder.path(), name)
     };
     assert!(picture("assignment", "a.png") == picture(&path("copy.toml"), "b.png"));
 }
 
 #[test]
 fn a_model_renders_by_itself_and_in_a_scene() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let out = folder.path().join("out.png").display().to_string();
     let model = file("models/bread/bread.obj").display().to_string();
     for args in [
@@ -39,14 +37,13 @@ fn a_model_renders_by_itself_and_in_a_scene() {
         vec!["render", "--obj", &model, "--size", "20x20", "-o", &out],
         vec!["render", "--obj", &format!("{model}@1,-15,-80*5"), "--size", "20x20", "-o", &out],
     ] {
-        let output = whitted(&args);
-        assert!(output.status.success(), "{args:?}: {}", stderr(&output));
+        done(&whitted(&args));
     }
 }
 
 #[test]
 fn codes_tell_what_was_wrong() {
-    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder();
     let out = folder.path().join("out.png").display().to_string();
     let broken = |name: &str| file("tests/broken").join(name).display().to_string();
     for (scene, strict, code) in [
@@ -64,9 +61,9 @@ fn codes_tell_what_was_wrong() {
         assert_eq!(whitted(&args).status.code(), Some(code), "{scene}");
     }
     let output = whitted(&["render", &broken("toml/unknown_nested_key.toml"), "-o", &out]);
-    let text = stderr(&output);
-    assert!(text.contains(":14:38: unknown key `raduis`; did you mean `radius`?\n"), "{text}");
-    assert!(text.contains(&format!("\n     | {:37}^^^^^^", "")), "{text}");
+    let said = said(&output);
+    assert!(said.contains(":14:38: unknown key `raduis`; did you mean `radius`?\n"), "{said}");
+    assert!(said.contains(&format!("\n     | {:37}^^^^^^", "")), "{said}");
 }
 
 /// They estimate no error, so they claim none.
@@ -76,8 +73,8 @@ fn the_classic_rules_tell_their_rays_and_no_error() {
     let scene = file("tests/formats/spd/tetra.nff").display().to_string();
     let out = folder.path().join("out.png").display().to_string();
     let output = whitted(&["render", &scene, "--rules", "classic", "-o", &out, "--stats", "-"]);
-    assert!(output.status.success(), "{}", stderr(&output));
-    let text = stderr(&output);
+    assert!(output.status.success(), "{}", said(&output));
+    let text = said(&output);
     assert!(
         text.contains("512x512 pixels, classic, depth 5, ") && !text.contains("off by"),
         "{text}"
@@ -98,7 +95,8 @@ fn the_classic_rules_leave_no_choice() {
 fn inspection_is_json() {
     let model = file("models/chicken/chicken.obj").display().to_string();
     let output = whitted(&["inspect", &model, "--json"]);
-    let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    done(&output);
+    let json = json(&output.stdout);
     assert_eq!((json["triangles"].as_u64(), json["closed"].as_bool()), (Some(2724), Some(false)));
     assert_eq!(json["textures"][0]["found"], true);
     assert_eq!(json["bounds"][1].as_array().map(Vec::len), Some(3));
@@ -107,22 +105,23 @@ fn inspection_is_json() {
 /// Oracle: the table of the standard scenes, and the text of the assignment.
 #[test]
 fn scenes_are_inspected() {
-    let inspect = |scene: &str| -> serde_json::Value {
+    let inspect = |scene: &str| {
         let output = whitted(&["inspect", scene, "--json"]);
-        serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{}", stderr(&output)))
+        done(&output);
+        json(&output.stdout)
     };
     let rings = inspect(&file("tests/formats/spd/rings.nff").display().to_string());
     let entities = &rings["entities"];
     let counts = ["cylinders", "spheres", "polygons", "surfaces", "lights"];
     assert_eq!(counts.map(|key| entities[key].as_u64()), [900, 900, 1, 181, 3].map(Some));
     assert_eq!((&rings["primitives"], &rings["lights"]), (&1801.into(), &3.into()));
-    let text = std::fs::read_to_string(file("tests/formats/spd/rings.nff")).expect("a scene");
-    let from = text.lines().find_map(|line| line.strip_prefix("from ")).expect("a view");
+    let scene = std::fs::read_to_string(file("tests/formats/spd/rings.nff")).expect("a scene");
+    let from = scene.lines().find_map(|line| line.strip_prefix("from ")).expect("a view");
     let from: Vec<f64> = from.split_whitespace().map(|x| x.parse().expect("a number")).collect();
     assert_eq!(rings["camera"]["eye"], serde_json::json!(from));
     let assignment = inspect("assignment");
-    let shown =
-        String::from_utf8(whitted(&["scenes", "--show", "assignment"]).stdout).expect("text");
+    let output = whitted(&["scenes", "--show", "assignment"]);
+    let shown = text(&output.stdout);
     assert_eq!(assignment["shapes"]["spheres"], shown.matches("shape.sphere =").count());
     assert_eq!(
         assignment["material_names"].as_array().map(Vec::len),
@@ -130,6 +129,6 @@ fn scenes_are_inspected() {
     );
     assert_eq!(assignment["textures"][0]["found"], true);
     let output = whitted(&["inspect", "assignment"]);
-    let text = String::from_utf8_lossy(&output.stdout);
+    let text = text(&output.stdout);
     assert!(text.contains("primitives   17\n"), "{text}");
 }
