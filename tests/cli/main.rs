@@ -2,6 +2,7 @@
 #![cfg(feature = "cli")]
 
 mod compare;
+mod gallery;
 mod goals;
 mod pictures;
 mod places;
