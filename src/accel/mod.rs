@@ -51,6 +51,7 @@ use query::Nearest;
 pub use simd::Isa;
 use simd::{Kernel, Simd, dispatch};
 use tree::{Tree, arrange};
+use walk::MAX_DEPTH;
 
 /// From so many primitives on, building takes memory that is worth giving back.
 const LARGE: usize = 1 << 16;
@@ -113,8 +114,14 @@ impl Accel {
 
     /// As [`Accel::build`], but in the time that `preset` allows.
     pub fn with_preset(shapes: Vec<Shape>, preset: Preset) -> Self {
+        Self::with_depth(shapes, preset, MAX_DEPTH)
+    }
+
+    /// As [`Accel::with_preset`], with a balanced tree if the usual one is deeper than `deepest`.
+    fn with_depth(shapes: Vec<Shape>, preset: Preset, deepest: usize) -> Self {
         let Division { inside, outside, frame, bounds } = Division::of(&shapes);
-        let mut wide = frame.map(|frame| (arrange(&shapes, &inside, &frame, preset), frame));
+        let mut wide =
+            frame.map(|frame| (arrange(&shapes, &inside, &frame, (preset, deepest)), frame));
         drop(inside);
         let mut numbers =
             wide.as_mut().map_or_else(Vec::new, |(wide, _)| mem::take(&mut wide.order));

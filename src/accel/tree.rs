@@ -13,18 +13,23 @@ use super::{
     leaf::{Spheres, Triangles},
     node::{Child, Content, Node},
     simd::Simd,
-    walk::MAX_DEPTH,
 };
 use crate::geometry::Shape;
 
-/// The nodes of the tree over the primitives `inside`, and their order.
-pub(super) fn arrange(shapes: &[Shape], inside: &[u32], frame: &Frame, preset: Preset) -> Wide {
+/// The nodes of the tree over the primitives `inside`, and their order; a balanced one where the other has more than `deepest` nodes
+/// on a way down.
+pub(super) fn arrange(
+    shapes: &[Shape],
+    inside: &[u32],
+    frame: &Frame,
+    (preset, deepest): (Preset, usize),
+) -> Wide {
     let boxes = || build::boxes(shapes, inside, frame);
     let kinds: Vec<Kind> = inside.par_iter().map(|k| Kind::of(&shapes[*k as usize])).collect();
     let meshes = kinds.iter().take(64).any(|kind| *kind == Kind::Triangle);
     let wide = collapse(&build::binary(boxes(), meshes, preset), &kinds);
     let mut wide =
-        if wide.depth > MAX_DEPTH { collapse(&build::balanced(&boxes()), &kinds) } else { wide };
+        if wide.depth > deepest { collapse(&build::balanced(&boxes()), &kinds) } else { wide };
     for place in &mut wide.order {
         *place = inside[*place as usize];
     }
