@@ -2,6 +2,8 @@
 #![cfg(feature = "cli")]
 
 mod damage;
+#[cfg(unix)]
+mod disk;
 mod files;
 mod goals;
 mod parts;

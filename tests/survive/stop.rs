@@ -1,4 +1,4 @@
-//! Signals, sudden death, full disks and deleted folders at any moment.
+//! Signals and sudden death at any moment.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -9,12 +9,12 @@ use std::time::{Duration, Instant};
 use super::{done, folder, json, names_in, read, refused, run, said, whitted};
 
 /// A picture of many small blocks that takes a moment.
-const PICTURE: [&str; 5] = ["render", "--size", "400x300", "--aa", "adaptive:1.5,4096"];
+pub(crate) const PICTURE: [&str; 5] = ["render", "--size", "400x300", "--aa", "adaptive:1.5,4096"];
 /// One that goes to and fro over all of it.
 const TOWARDS_ERROR: [&str; 5] = ["render", "--size", "400x300", "--max-error", "0.4"];
 
 /// The undivided picture, for comparing.
-fn reference(at: &Path, picture: &[&str], kind: &str) -> Vec<u8> {
+pub(crate) fn reference(at: &Path, picture: &[&str], kind: &str) -> Vec<u8> {
     let name = format!("reference.{kind}");
     done(&run(at, &[picture, &["-o", &name, "--quiet", "--stats", "reference.json"]].concat()));
     let bytes = read(at, &name);
@@ -22,7 +22,7 @@ fn reference(at: &Path, picture: &[&str], kind: &str) -> Vec<u8> {
     bytes
 }
 
-fn signal(child: &Child, name: &str) {
+pub(crate) fn signal(child: &Child, name: &str) {
     let id = child.id().to_string();
     let sent = Command::new("kill").args([name, &id]).stderr(Stdio::null()).status();
     sent.expect("kill is there");
@@ -42,7 +42,7 @@ fn wait_until_it_sleeps(child: &Child) {
 }
 
 /// Starts a render that tells its progress, and waits until at least `share` of it is done, or it ended.
-fn until(at: &Path, share: f64, more: &[&str]) -> Child {
+pub(crate) fn until(at: &Path, share: f64, more: &[&str]) -> Child {
     let arguments = [&PICTURE[..], &["--progress", "json"], more].concat();
     let mut child = whitted(at, &arguments).stderr(Stdio::piped()).spawn().expect("it runs");
     let mut lines = BufReader::new(child.stderr.take().expect("piped"));
@@ -62,7 +62,7 @@ fn until(at: &Path, share: f64, more: &[&str]) -> Child {
     child
 }
 
-fn end(child: Child) -> Output {
+pub(crate) fn end(child: Child) -> Output {
     child.wait_with_output().expect("it ends")
 }
 
@@ -389,69 +389,4 @@ fn tiles_that_are_stopped_go_on_where_they_were() {
     assert!(said(&output).contains("a-1of3.png is finished already"), "{}", said(&output));
     done(&run(at, &["merge", "a-1of3.png", "a-2of3.png", "a-3of3.png", "-o", "all.png"]));
     assert!(read(at, "all.png") == expected);
-}
-
-/// A limit on the size of files stands in for a disk without room: writing fails halfway in the same way.
-#[test]
-fn a_full_disk_costs_neither_the_checkpoint_nor_the_old_picture() {
-    let folder = folder();
-    let at = folder.path();
-    let expected = reference(at, &PICTURE, "exr");
-    fs::write(at.join("a.exr"), "old").expect("written");
-    let program = env!("CARGO_BIN_EXE_whitted");
-    // In units of 512 or 1024 bytes: room for part of the checkpoint, which takes 16 bytes a pixel, but not for the picture.
-    let line = format!(
-        "trap '' XFSZ; ulimit -f 600; exec {program} {} -o a.exr --checkpoint 0.02 --resume",
-        PICTURE.join(" ")
-    );
-    let output = Command::new("sh").args(["-c", &line]).current_dir(at).output().expect("a shell");
-    refused(
-        &output,
-        1,
-        &["a.exr: could not be written", "is kept in a.exr.checkpoint", "--resume"],
-    );
-    assert_eq!(read(at, "a.exr"), b"old");
-    let output = run(at, &[&PICTURE[..], &["-o", "a.exr", "--resume"]].concat());
-    done(&output);
-    assert!(said(&output).contains("going on from a.exr.checkpoint"), "{}", said(&output));
-    assert!(read(at, "a.exr") == expected);
-}
-
-#[test]
-fn a_folder_deleted_on_the_way_is_made_again() {
-    let folder = folder();
-    let at = folder.path();
-    let expected = reference(at, &PICTURE, "png");
-    for stopped in [false, true] {
-        fs::create_dir(at.join("sub")).expect("created");
-        let child = until(at, 0.3, &["-o", "sub/a.png", "--checkpoint", "0.02"]);
-        fs::remove_dir_all(at.join("sub")).expect("deleted");
-        if stopped {
-            signal(&child, "-INT");
-        }
-        let output = end(child);
-        if stopped {
-            refused(&output, 130, &["sub/a.png.checkpoint"]);
-            done(&run(at, &[&PICTURE[..], &["-o", "sub/a.png", "--resume"]].concat()));
-        } else {
-            done(&output);
-        }
-        assert!(read(at, "sub/a.png") == expected, "stopped: {stopped}");
-        assert_eq!(names_in(&at.join("sub")), ["a.png"]);
-        fs::remove_dir_all(at.join("sub")).expect("deleted");
-    }
-}
-
-/// A file where the folder was: nothing can be written there any more.
-#[test]
-fn a_place_that_cannot_be_written_any_more_is_an_error_that_says_so() {
-    let folder = folder();
-    let at = folder.path();
-    fs::create_dir(at.join("sub")).expect("created");
-    let child = until(at, 0.3, &["-o", "sub/a.png"]);
-    fs::remove_dir_all(at.join("sub")).expect("deleted");
-    fs::write(at.join("sub"), "in the way").expect("written");
-    let output = end(child);
-    refused(&output, 1, &["sub/a.png", "could not be written"]);
-    assert_eq!(read(at, "sub"), b"in the way");
 }
