@@ -1,7 +1,7 @@
 //! The plots of a study: what of the rows stands in which.
 
 use super::{
-    Row, Trade,
+    LEAST_ERROR, Row, Trade,
     draw::Color,
     pareto_front,
     plot::{Chart, Series, plot},
@@ -50,10 +50,7 @@ const COLORS: [Color; 7] = [
 /// The axis of errors.
 const ERROR_AXIS: &str = "error, levels of 255 (root mean square)";
 
-/// Errors below this many levels are of rounding, and are drawn as this much.
-const LEAST_ERROR: f64 = 1e-3;
-
-/// The measured error as it is drawn.
+/// The measured error as it is drawn: rounding as the least.
 fn error(row: &Row) -> f64 {
     row.measured_rmse.max(LEAST_ERROR)
 }

@@ -176,6 +176,9 @@ impl Mode {
     }
 }
 
+/// Errors below this many levels are of rounding.
+const LEAST_ERROR: f64 = 1e-3;
+
 /// The points that no other beats in both numbers, from the left.
 pub(crate) fn pareto_front(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let mut points = points.to_vec();

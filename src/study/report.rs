@@ -2,7 +2,7 @@
 
 use std::{collections::HashSet, fmt::Write};
 
-use super::{Row, Study, Trade, plot::Chart, svg::escaped};
+use super::{LEAST_ERROR, Row, Study, Trade, plot::Chart, svg::escaped};
 
 /// What stands in a table for what is not known.
 const DASH: &str = "–";
@@ -86,7 +86,9 @@ fn add_errors(text: &mut String, rows: &[&Row], compares_estimates: bool) {
     );
     for row in rows {
         let Row { scene, width, height, depth, mode, seconds, measured_rmse, worst, .. } = row;
-        let ratio = known(row.estimated_rmse / measured_rmse, 2, DASH);
+        let ratio = row.estimated_rmse / measured_rmse;
+        let ratio = if *measured_rmse < LEAST_ERROR { f64::NAN } else { ratio };
+        let ratio = known(ratio, 2, DASH);
         let ratio = if compares_estimates { format!(" {ratio} |") } else { String::new() };
         let _ = writeln!(
             text,
@@ -279,7 +281,7 @@ mod tests {
             relative_rays: f64::NAN,
             ..Row::example("adaptive:1,64")
         };
-        let exact = Row { measured_rmse: 0.0, estimated_rmse: 0.0, ..Row::example("none") };
+        let exact = Row { measured_rmse: 5e-5, estimated_rmse: 0.0, ..Row::example("none") };
         let rows = [unknown, exact];
         let table = csv(&rows);
         let lines: Vec<Vec<String>> = table.lines().map(cells).collect();
