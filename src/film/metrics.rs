@@ -174,7 +174,7 @@ mod tests {
             assert!(decode(other).starts_with("a.exr: not a PNG file, and no other"));
         }
         for broken in [&SIGNATURE[..], &SIGNATURE[..3], b""] {
-            assert!(decode(broken).starts_with("a.exr: not a sound PNG file ("));
+            assert!(decode(broken).starts_with("a.exr: not a valid PNG file ("));
         }
     }
 
@@ -247,7 +247,7 @@ mod tests {
         assert!(matches!(read_png_rgb8(folder.path()), Err(ImageError::Read { .. })));
         RgbImage::new(50, 50).save(&path).expect("written");
         let whole = std::fs::read(&path).expect("readable");
-        for damaged in [&b""[..], b"P6 1 1 255", &whole[..whole.len() / 2], &whole[..40]] {
+        for damaged in [&b""[..], &whole[..whole.len() / 2], &whole[..40]] {
             std::fs::write(&path, damaged).expect("written");
             let error = read_png_rgb8(&path).expect_err("damaged");
             assert!(matches!(error, ImageError::Decode { .. }), "{error:?}");
