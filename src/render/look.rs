@@ -119,12 +119,12 @@ impl Window {
     }
 }
 
-/// Whether a suspect pixel is about as wide as the cells of the pattern in it, so that some may lie unseen between the
-/// centres about it; `contrast` is its [`Look`]'s.
+/// Whether a suspect pixel of one colour with its neighbours is about as wide as the cells of the pattern in it, so that
+/// some may lie unseen between the centres about it; `contrast` is its [`Look`]'s. Where colours differ, they tell.
 ///
 /// So it is where all neighbours but two at most met other cells than its own; where cells are wider, no more than five
-/// do. So it is too where one at a side did, though all have the same colour: where two cells meet their colours
-/// differ, so there is another one on the way.
+/// do. So it is too where one at a side did: where two cells meet their colours differ, so there is another one on the
+/// way.
 pub(super) fn skips_cells(centers: &Plane<Sample>, x: i64, y: i64, contrast: f32) -> bool {
     const MOST_ALIKE: usize = 2;
     let cell = centers.at(x, y).cell;
@@ -133,9 +133,9 @@ pub(super) fn skips_cells(centers: &Plane<Sample>, x: i64, y: i64, contrast: f32
     }
     let is_own = |dx: i64, dy: i64| centers.nearest(x + dx, y + dy).cell == cell;
     let alike = |dy: i64| (-1..=1).filter(move |dx| is_own(*dx, dy)).count();
-    (-1..=1).map(alike).sum::<usize>() <= MOST_ALIKE + 1
-        || contrast < ONE_COLOR
-            && ![(-1, 0), (1, 0), (0, -1), (0, 1)].iter().all(|&(dx, dy)| is_own(dx, dy))
+    contrast < ONE_COLOR
+        && ((-1..=1).map(alike).sum::<usize>() <= MOST_ALIKE + 1
+            || ![(-1, 0), (1, 0), (0, -1), (0, 1)].iter().all(|&(dx, dy)| is_own(dx, dy)))
 }
 
 /// The colour of the centre at a place in the middle one of three rows, in all of which it has neighbours, with the
@@ -164,7 +164,7 @@ mod tests {
         // An edge between two cells, one cell, and no pattern.
         assert!(!skips(|_, y| 1 + y / 2, 1e4));
         assert!(!skips(|_, _| 5, 1.0) && !skips(|_, _| 0, 1.0));
-        // Cells narrower than a pixel.
-        assert!(skips(|x, y| 1 + x + 3 * y, 1e4));
+        // Cells narrower than a pixel, of one colour by chance or not.
+        assert!(skips(|x, y| 1 + x + 3 * y, 1.0) && !skips(|x, y| 1 + x + 3 * y, 1e4));
     }
 }
