@@ -4,6 +4,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use glam::DVec2;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::{
     Progress,
@@ -21,13 +22,35 @@ pub trait Sampler {
 
     /// The least number of samples that the adaptive mode gives a pixel, because something is known to be there that
     /// fewer may miss.
-    fn least_samples(&self, _x: u32, _y: u32) -> u32 {
-        0
+    fn least_samples(&self, _x: u32, _y: u32) -> Least {
+        Least::default()
     }
 
     /// Whether any pixel has such a least number.
     fn has_thin(&self) -> bool {
         false
+    }
+}
+
+/// How many samples a pixel gets at least.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Least {
+    /// In any case.
+    pub samples: u32,
+    /// As long as all of them met the same; not fewer.
+    pub if_alike: u32,
+}
+
+impl Least {
+    /// Whether there is such a number.
+    pub(super) fn is_some(self) -> bool {
+        self.samples > 0
+    }
+
+    /// What is needed for both.
+    pub(super) fn max(self, other: Self) -> Self {
+        let samples = self.samples.max(other.samples);
+        Self { samples, if_alike: self.if_alike.max(other.if_alike) }
     }
 }
 

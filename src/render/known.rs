@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    crew::{Crew, Sampler, in_turn, lock},
+    crew::{Crew, Least, Sampler, in_turn, lock},
     hidden::hidden_error,
     look::{ONE_COLOR, Window, corrected, skips_cells},
     outlook::{Outlook, Worth, outlooks, tile_of},
@@ -19,7 +19,7 @@ use crate::{
 
 /// The samples that a pixel gets at least where a pattern's cells are no wider than it: its centre and corners, and
 /// those of its neighbours, may all have met the same colour.
-const LEAST_IN_CELLS: u32 = 8;
+const LEAST_IN_CELLS: Least = Least { samples: 8, if_alike: 8 };
 
 /// What is known of the pixels of an area.
 #[derive(Serialize, Deserialize)]
@@ -60,7 +60,7 @@ impl Known {
         let never = || false;
         crew.run(&area, false, never, |sampler, _, tile| {
             let least = |x: i64, y: i64| {
-                if has_thin { sampler.least_samples(x as u32, y as u32) } else { 0 }
+                if has_thin { sampler.least_samples(x as u32, y as u32) } else { Least::default() }
             };
             let looks = Window::of_centers(tile, centers).looks();
             let (count, columns) = (tile.len(), centers.columns(tile));
@@ -71,13 +71,13 @@ impl Known {
                 for ((x, place), look) in (tile.x0..tile.x1).zip(columns.clone()).zip(looks) {
                     let center = &rows[1][place];
                     let skips = look.suspect && skips_cells(centers, x, y, look.contrast);
-                    let cells = if skips { LEAST_IN_CELLS } else { 0 };
+                    let cells = if skips { LEAST_IN_CELLS } else { Least::default() };
                     let error = look.center_error(look.inner);
                     let thin = least(x, y);
                     let pixel = Pixel {
                         suspect: look.suspect,
                         error,
-                        is_thin: thin > 0,
+                        is_thin: thin.is_some(),
                         least: thin.max(cells),
                         contrast: look.contrast,
                         busy: look.busy,

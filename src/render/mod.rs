@@ -29,7 +29,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use thiserror::Error;
 
 pub use blocks::{Account, Block, Sink, blocks};
-pub use crew::Sampler;
+pub use crew::{Least, Sampler};
 pub use goal::Unfinished;
 pub use picture::{Picture, picture};
 

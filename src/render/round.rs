@@ -6,7 +6,7 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    crew::{Sampler, Scratch},
+    crew::{Least, Sampler, Scratch},
     outlook::Worth,
     plane::Plane,
 };
@@ -21,9 +21,6 @@ use crate::{
 
 /// Samples that are taken without looking at the clock.
 const AT_ONCE: usize = 512;
-
-/// How many times as many samples as usual it takes to meet what touches a pixel with a part only.
-const IN_A_CORNER: u32 = 4;
 
 /// When a pixel gets more rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,7 +57,7 @@ pub(super) struct Pixel {
     /// Whether something thin is known to be in it.
     pub(super) is_thin: bool,
     /// Samples of the sequence that it gets whatever its error.
-    pub(super) least: u32,
+    pub(super) least: Least,
     pub(super) refined: Option<Box<Refined>>,
 }
 
@@ -71,12 +68,10 @@ impl Pixel {
     }
 
     /// Whether it is to get more samples whatever its error.
-    ///
-    /// Where something thin is known to be and nothing of it was met, it may be in a corner.
     pub(super) fn is_due(&self) -> bool {
-        let is_alike = self.refined.as_ref().is_some_and(|refined| refined.is_alike());
-        let times = if self.is_thin && is_alike { IN_A_CORNER } else { 1 };
-        self.points() < self.least.saturating_mul(times)
+        let is_alike = || self.refined.as_ref().is_some_and(|refined| refined.is_alike());
+        let points = self.points();
+        points < self.least.samples || points < self.least.if_alike && is_alike()
     }
 }
 

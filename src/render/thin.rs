@@ -2,20 +2,25 @@
 
 use glam::{DVec2, DVec3};
 
-use super::plane::{Area, Plane};
+use super::{
+    crew::Least,
+    plane::{Area, Plane},
+};
 use crate::{camera::View, scene::Scene};
 
 /// Wider things than this, in pixels, are found by samples.
 const WIDEST: f64 = 1.5;
 /// Samples across the width of a thing.
 const ACROSS: f64 = 2.0;
+/// How many times as many samples it takes to meet what touches a pixel with a part only.
+const IN_A_CORNER: f64 = 4.0;
 
 /// The least number of samples of pixels that something thin touches, as the camera sees it; 0 elsewhere.
 ///
 /// Thin are spheres, cylinders, cones and pieces of meshes narrower than a pixel and a half, hidden or not: two samples across their
-/// width, as even as those are, meet what lies across a pixel, and as many along it what ends there. None if there is nothing thin.
-pub(super) fn least_samples(scene: &Scene, view: &View, area: &Area) -> Option<Plane<u32>> {
-    let mut least: Option<Plane<u32>> = None;
+/// width, as even as those are, meet what lies across a pixel. As long as all met the same, as many along it are taken, and more. None if there is nothing thin.
+pub(super) fn least_samples(scene: &Scene, view: &View, area: &Area) -> Option<Plane<Least>> {
+    let mut least: Option<Plane<Least>> = None;
     let primitives = 0..scene.primitive_count() as u32;
     let round = primitives.filter_map(|primitive| scene.shape(primitive).axis());
     for (axis, radius) in round.chain(scene.pieces().iter().copied()) {
@@ -26,11 +31,12 @@ pub(super) fn least_samples(scene: &Scene, view: &View, area: &Area) -> Option<P
         let width = 2.0 * radius / pixel_a.max(pixel_b);
         if width <= WIDEST && width > 0.0 {
             let reach = radius / pixel_a.min(pixel_b);
-            // What is short too, such as a sphere, is found by samples as dense both ways.
-            let length = ((b - a).length() + width).min(1.0);
-            let samples = ACROSS / width * (ACROSS / length).max(1.0);
-            let samples = samples.ceil().min(f64::from(u32::MAX)) as u32;
-            let least = least.get_or_insert_with(|| Plane::new(*area, 0));
+            let rounded = |samples: f64| samples.ceil().min(f64::from(u32::MAX)) as u32;
+            let (across, length) = (ACROSS / width, ((b - a).length() + width).min(1.0));
+            // Where nothing of it was met it may be short, such as a sphere, or in a corner.
+            let if_alike = across * (ACROSS / length).max(1.0) * IN_A_CORNER;
+            let samples = Least { samples: rounded(across), if_alike: rounded(if_alike) };
+            let least = least.get_or_insert_with(|| Plane::new(*area, Least::default()));
             mark(least, a, b, reach, samples);
         }
     }
@@ -51,7 +57,7 @@ fn thin_part(view: &View, [from, to]: [DVec3; 2], radius: f64) -> [DVec3; 2] {
 }
 
 /// Marks all pixels that come within `reach` of the way from `a` to `b`.
-fn mark(least: &mut Plane<u32>, a: DVec2, b: DVec2, reach: f64, samples: u32) {
+fn mark(least: &mut Plane<Least>, a: DVec2, b: DVec2, reach: f64, samples: Least) {
     let area = *least.area();
     let clip = |x: f64, low: i64, high: i64| (x.floor() as i64).clamp(low, high);
     let (low, high) = (a.min(b) - reach, a.max(b) + reach);
@@ -64,7 +70,7 @@ fn mark(least: &mut Plane<u32>, a: DVec2, b: DVec2, reach: f64, samples: u32) {
         let (left, right) = (p.min(q) - reach, p.max(q) + reach);
         for x in clip(left, area.x0, area.x1)..clip(right + 1.0, area.x0, area.x1) {
             let least = least.at_mut(x, y);
-            *least = samples.max(*least);
+            *least = least.max(samples);
         }
     }
 }
@@ -83,8 +89,9 @@ mod tests {
             (DVec2::new(4.1, -3.0), DVec2::new(5.3, 30.0), 0.4),
             (DVec2::new(15.0, 14.0), DVec2::new(2.0, 1.0), 0.1),
         ] {
-            let mut least = Plane::new(area, 0);
-            mark(&mut least, a, b, reach, 7);
+            let mut least = Plane::new(area, Least::default());
+            let seven = Least { samples: 7, if_alike: 9 };
+            mark(&mut least, a, b, reach, seven);
             let mut touched = 0;
             for (x, y) in area.pixels() {
                 let near = (0..400).any(|k| {
@@ -97,9 +104,9 @@ mod tests {
                     p.distance(a + (b - a) * t) < reach
                 });
                 touched += usize::from(near);
-                assert!(!near || *least.at(x, y) == 7, "{a} {b}: {x}, {y}");
+                assert!(!near || *least.at(x, y) == seven, "{a} {b}: {x}, {y}");
             }
-            let marked = least.values().iter().filter(|n| **n > 0).count();
+            let marked = least.values().iter().filter(|n| n.is_some()).count();
             assert!(marked <= 2 * touched + 8, "{marked} for {touched}");
         }
     }

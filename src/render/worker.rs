@@ -4,7 +4,11 @@ use std::sync::{Mutex, PoisonError};
 
 use glam::DVec2;
 
-use super::{RayCounts, crew::Sampler, plane::Plane};
+use super::{
+    RayCounts,
+    crew::{Least, Sampler},
+    plane::Plane,
+};
 use crate::{
     aa::Sample,
     camera::View,
@@ -18,13 +22,13 @@ pub(super) struct Worker<'a> {
     pub(super) view: View,
     pub(super) traced: Vec<trace::Sample>,
     /// The least samples of pixels with something thin, if there are any.
-    pub(super) thin: Option<&'a Plane<u32>>,
+    pub(super) thin: Option<&'a Plane<Least>>,
     pub(super) counts: &'a Mutex<RayCounts>,
 }
 
 impl Sampler for Worker<'_> {
-    fn least_samples(&self, x: u32, y: u32) -> u32 {
-        self.thin.map_or(0, |thin| *thin.at(i64::from(x), i64::from(y)))
+    fn least_samples(&self, x: u32, y: u32) -> Least {
+        self.thin.map_or(Least::default(), |thin| *thin.at(i64::from(x), i64::from(y)))
     }
 
     fn has_thin(&self) -> bool {
