@@ -92,7 +92,7 @@ impl Camera {
         let (right, down) = (self.right * pixel, self.up * -pixel);
         let corner =
             self.forward - right * (f64::from(width) / 2.0) - down * (f64::from(height) / 2.0);
-        View { eye: self.eye, corner, right, down }
+        View { eye: self.eye, corner, right, down, forward: self.forward }
     }
 }
 
@@ -105,6 +105,8 @@ pub struct View {
     /// The change of direction from a pixel to the next.
     right: DVec3,
     down: DVec3,
+    /// The unit direction of the view's axis.
+    forward: DVec3,
 }
 
 impl View {
@@ -122,9 +124,7 @@ impl View {
 
     /// How far in front of the eye a point is, along the axis of the view; negative behind it.
     pub fn depth(&self, point: DVec3) -> f64 {
-        let forward = self.down.cross(self.right).normalize();
-        let forward = if forward.dot(self.corner) < 0.0 { -forward } else { forward };
-        (point - self.eye).dot(forward)
+        (point - self.eye).dot(self.forward)
     }
 
     /// The length that a pixel covers at depth 1.

@@ -155,7 +155,9 @@ impl Round<'_> {
     fn judge(&self, one: &mut Chosen, refined: Box<Refined>) {
         let pixel = &mut one.pixel;
         let (mut error, mut expected) = refined.errors(pixel.contrast, pixel.busy);
-        if let Some(thin) = refined.error_of_thin().filter(|_| pixel.is_thin) {
+        if pixel.is_thin
+            && let Some(thin) = refined.error_of_thin()
+        {
             (error, expected) = (error.max(thin), thin);
         }
         (pixel.error, pixel.refined) = (error, Some(refined));
