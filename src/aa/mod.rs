@@ -15,7 +15,7 @@ pub use refined::Sample;
 /// The largest grid: 64 × 64 rays per pixel.
 const LARGEST_SIDE: u32 = 64;
 /// The most rays per pixel that `adaptive` may be given.
-const MOST_RAYS: u32 = 1 << 20;
+pub const MOST_RAYS: u32 = 1 << 20;
 /// What `adaptive` aims at in each pixel unless told otherwise, in levels of 255.
 const DEFAULT_ERROR: f32 = 4.0;
 /// The most rays per pixel of `adaptive` unless told otherwise.
@@ -202,6 +202,8 @@ mod tests {
         let message = |text: &str| text.parse::<AntiAliasing>().expect_err(text).to_string();
         assert!(message("grid").starts_with("anti-aliasing mode `grid:N` needs a whole number"));
         assert!(message("grid:x").starts_with("anti-aliasing mode `grid:x` needs a whole number"));
+        let is_taken = |most: u32| format!("adaptive:0,{most}").parse::<AntiAliasing>().is_ok();
+        assert!(is_taken(1_048_576) && !is_taken(1_048_577));
         for text in ["sobol", "sobol:", "sobol:0", "sobol:-1", "sobol:1.5"] {
             assert!(matches!(text.parse::<AntiAliasing>(), Err(AaError::Count { .. })), "{text}");
         }

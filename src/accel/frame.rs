@@ -131,9 +131,7 @@ impl Frame {
     #[inline(always)]
     fn shrunk(&self, dir: DVec3) -> (DVec3, f64, bool) {
         let size = dir.abs();
-        let largest = if size.x > size.y { size.x } else { size.y };
-        let largest = if largest > size.z { largest } else { size.z };
-        let exponent = largest.to_bits() >> 52; // biased
+        let exponent = scale::largest(dir).to_bits() >> 52; // biased
         let shrink = f64::from_bits(2046_u64.wrapping_sub(exponent) << 52);
         let rate = self.scale / shrink;
         let is_finite =

@@ -29,9 +29,6 @@ fn write_seconds(format: Format, pixels: f64, threads: usize) -> f64 {
 /// The most rays per pixel of a render towards a goal, unless the mode says so.
 const MOST_RAYS_FOR_GOAL: u32 = 1024;
 
-/// The most rays per pixel that the adaptive mode takes.
-pub(crate) const MOST_RAYS: u32 = 1 << 20;
-
 /// The classical rules leave no choice in these.
 pub(crate) fn check_classic(args: &RenderArgs) -> Result<(), Failure> {
     let chosen = [
@@ -232,14 +229,6 @@ pub(crate) fn check_memory(label: &Label, goal: Goal) -> Result<(), Failure> {
 mod tests {
     use super::*;
 
-    /// Oracle: the mode's own text, which is refused with one ray more.
-    #[test]
-    fn the_most_rays_are_those_that_the_mode_takes() {
-        let is_taken = |most: u32| format!("adaptive:0,{most}").parse::<AntiAliasing>().is_ok();
-        assert!(is_taken(MOST_RAYS) && !is_taken(MOST_RAYS + 1));
-    }
-
-    /// Oracle: measured with two cores, 0.028 µs a pixel for a PNG file; for OpenEXR 0.39 µs by one thread and 0.28 µs by two.
     #[test]
     fn as_much_time_is_kept_for_writing_as_the_format_takes() {
         let pixels = 4e6;

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use anyhow::Context;
 use image::RgbImage;
-use whitted::aa::AntiAliasing;
+use whitted::aa::{AntiAliasing, MOST_RAYS};
 use whitted::classic::{CLASSIC_SIZE, render_classic};
 use whitted::film::{Difference, Film, Label, Share, encode};
 use whitted::render::{Goal, Outcome, RayCounts, RenderOptions, Rendering};
@@ -15,8 +15,7 @@ use super::compare::read_picture;
 use super::failure::{Failure, warn};
 use super::job::{self, Finished, Order};
 use super::options::{
-    MOST_RAYS, check_classic, check_memory, check_parts, check_reference, check_size, label,
-    options,
+    check_classic, check_memory, check_parts, check_reference, check_size, label, options,
 };
 use super::preview::Preview;
 use super::signals::Signals;

@@ -22,7 +22,8 @@ use super::{
 use crate::math::{
     self,
     compensated::{fused_dot, two_sum},
-    cross, difference_of_products, scale,
+    cross, difference_of_products,
+    scale::{self, largest},
 };
 
 /// How far a crossing may be moved back along the ray into its plane, of the lengths at hand.
@@ -140,14 +141,6 @@ fn within(vertices: &[DVec3], origin: DVec3, dir: DVec3, t: f64) -> f64 {
     }
     // Where it touches the box, rounding may leave no room.
     t.max(enter.min(exit)).min(exit.max(enter))
-}
-
-/// The largest component, in magnitude.
-#[inline(always)]
-fn largest(v: DVec3) -> f64 {
-    let v = v.abs();
-    let xy = if v.x > v.y { v.x } else { v.y };
-    if xy > v.z { xy } else { v.z }
 }
 
 /// The crossing of the line of `ray` with the convex polygon of `vertices`, whose plane is square to `normal`.

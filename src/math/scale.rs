@@ -40,14 +40,19 @@ pub fn unit(v: DVec3) -> Option<DVec3> {
     normalized(v).0.try_normalize()
 }
 
+/// The largest component, in magnitude; without a branch, for loops over lanes.
+#[inline(always)]
+pub(crate) fn largest(v: DVec3) -> f64 {
+    let size = v.abs();
+    let largest = if size.x > size.y { size.x } else { size.y };
+    if largest > size.z { largest } else { size.z }
+}
+
 /// The unit vector along `v`, or `other` if `v` is zero, subnormal or not finite; without a branch, for loops over
 /// lanes.
 #[inline(always)]
 pub(crate) fn unit_or(v: DVec3, other: DVec3) -> DVec3 {
-    let size = v.abs();
-    let largest = if size.x > size.y { size.x } else { size.y };
-    let largest = if largest > size.z { largest } else { size.z };
-    let exponent = largest.to_bits() >> 52; // biased
+    let exponent = largest(v).to_bits() >> 52; // biased
     let w = v * f64::from_bits(2046_u64.wrapping_sub(exponent) << 52);
     let unit = w * w.length_recip();
     let is_ordinary = (1..2046).contains(&exponent);
