@@ -149,9 +149,8 @@ fn render(
 ) -> Result<Effort, RenderError> {
     let course = watcher.course;
     let work = || {
-        let effort = render_blocks(order.scene, order.options, job);
-        course.end();
-        effort
+        let _end = course.end_of();
+        render_blocks(order.scene, order.options, job)
     };
     std::thread::scope(|scope| {
         let (terminal, window) = match preview {

@@ -35,10 +35,9 @@ impl Course {
         self.percent.load(Ordering::Relaxed)
     }
 
-    /// The render is over.
-    pub(crate) fn end(&self) {
-        *self.has_ended.lock().unwrap_or_else(PoisonError::into_inner) = true;
-        self.ended.notify_all();
+    /// What, when it is dropped, tells that the render is over; a panic drops it too.
+    pub(crate) fn end_of(&self) -> End<'_> {
+        End(self)
     }
 
     #[cfg(feature = "view")]
@@ -51,6 +50,16 @@ impl Course {
         let guard = self.has_ended.lock().unwrap_or_else(PoisonError::into_inner);
         let waited = self.ended.wait_timeout_while(guard, time, |has_ended| !*has_ended);
         *waited.unwrap_or_else(PoisonError::into_inner).0
+    }
+}
+
+/// The end of a render.
+pub(crate) struct End<'a>(&'a Course);
+
+impl Drop for End<'_> {
+    fn drop(&mut self) {
+        *self.0.has_ended.lock().unwrap_or_else(PoisonError::into_inner) = true;
+        self.0.ended.notify_all();
     }
 }
 
@@ -102,5 +111,22 @@ impl Watcher<'_> {
         if let Some(terminal) = terminal {
             terminal.draw(self.job, self.course.percent());
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whoever waits for the end of a render would otherwise wait for ever.
+    #[test]
+    fn a_panic_ends_a_render() {
+        let course = Course::default();
+        assert!(!course.wait(Duration::ZERO));
+        let panic = std::panic::catch_unwind(|| {
+            let _end = course.end_of();
+            panic!("a render that fails");
+        });
+        assert!(panic.is_err() && course.wait(Duration::ZERO));
     }
 }
