@@ -56,7 +56,6 @@ pub fn render_classic(
     let rays = rows.iter().fold(RayCounts::default(), |sum, (_, counts)| sum + *counts);
     let seconds = started.elapsed().as_secs_f64();
     Ok(Rendering {
-        errors: Vec::new(),
         estimated_rmse: None,
         outcome: Outcome::default(),
         film,

@@ -26,16 +26,28 @@ pub const BUSY: f32 = 0.6;
 /// The least of [`Look::busy`] for a pixel between two that differ from it.
 const BETWEEN: f32 = 0.75;
 
-/// A pixel's centre among its eight neighbours.
+/// The error of a centre's colour where the neighbours' rays all met the same, from the squared second differences
+/// `curve` and the squared differences `slope` of opposite neighbours, each horizontal and vertical; `corrected` is
+/// whether the second-order term of the box integral was added. Without a branch, for loops over pixels.
+///
+/// The share of the second differences grows as they outweigh the slope: from what is left of a smooth function to all
+/// of a noise's variance.
+#[inline(always)]
+pub fn smooth_error(curve: f32, slope: f32, corrected: bool) -> f32 {
+    let share = if corrected { CORRECTED_CURVE } else { CENTER_CURVE };
+    // 3 for noise. A slope of zero gives 1, also without a curve.
+    let noise = (curve / (3.0 * slope)).min(1.0);
+    curve * (share + CENTER_CURVE * NOISE * noise * noise)
+}
+
+/// A pixel's centre among its eight neighbours, some of whose rays met other things.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
-    /// Whether a neighbour's ray met anything else.
-    pub suspect: bool,
     /// Whether the four neighbours at the sides have the centre's signature.
     pub inner: bool,
     /// Squared differences to neighbours of another signature, those at the corners counted half.
     pub edge: f32,
-    /// Squared differences to all neighbours; 0 for a pixel that is not suspect.
+    /// Squared differences to all neighbours.
     pub contrast: f32,
     /// Squared second differences, horizontal and vertical.
     pub curve: f32,
@@ -54,22 +66,11 @@ const NEIGHBOURS: [(usize, f32); 8] =
     [(1, 1.0), (3, 1.0), (5, 1.0), (7, 1.0), (0, 0.5), (2, 0.5), (6, 0.5), (8, 0.5)];
 
 impl Look {
-    /// The look of a centre whose neighbours' rays all met the same.
-    pub fn smooth(curve: f32, slope: f32) -> Self {
-        let (edge, contrast, busy) = (0.0, 0.0, 0.0);
-        Self { suspect: false, inner: true, edge, contrast, curve, slope, busy }
-    }
-
     /// The look of the middle one of 3 × 3 centres, given row by row as display levels and signatures.
     pub fn at(levels: &[Vec3; 9], signatures: &[u32; 9]) -> Self {
         let (center, signature) = (levels[4], signatures[4]);
         let bend =
             |a: usize, b: usize| (levels[a] + levels[b] - 2.0 * center).length_squared() / 3.0;
-        let curve = bend(3, 5) + bend(1, 7);
-        let slope = squared_distance(levels[3], levels[5]) + squared_distance(levels[1], levels[7]);
-        if signatures.iter().all(|other| *other == signature) {
-            return Self::smooth(curve, slope);
-        }
         let (mut edge, mut contrast) = (0.0, 0.0);
         for (place, weight) in NEIGHBOURS {
             let square = squared_distance(levels[place], center);
@@ -85,32 +86,18 @@ impl Look {
             .any(|&(a, b)| signatures[a] != signature && signatures[b] != signature);
         let busy = ((changes - 2.0) / 4.0).clamp(0.0, 1.0);
         Self {
-            busy: if between { busy.max(BETWEEN) } else { busy },
-            suspect: true,
             inner: [1, 3, 5, 7].iter().all(|&place| signatures[place] == signature),
             edge,
             contrast,
-            curve,
-            slope,
+            curve: bend(3, 5) + bend(1, 7),
+            slope: squared_distance(levels[3], levels[5]) + squared_distance(levels[1], levels[7]),
+            busy: if between { busy.max(BETWEEN) } else { busy },
         }
     }
 
-    /// The error of the centre's colour; `corrected` is whether the second-order term of the box integral was added.
-    pub fn center_error(&self, corrected: bool) -> f32 {
-        if self.suspect {
-            return (CENTER_EDGE * self.edge).max(self.texture_error(CENTER_CURVE));
-        }
-        self.texture_error(if corrected { CORRECTED_CURVE } else { CENTER_CURVE })
-    }
-
-    /// The share of the second differences grows as they outweigh the slope: from what is left of a smooth function to
-    /// all of a noise's variance.
-    fn texture_error(&self, share: f32) -> f32 {
-        if self.curve <= 0.0 {
-            return 0.0;
-        }
-        let noise = (self.curve / (3.0 * self.slope)).min(1.0); // 3 for noise; a slope of zero gives 1
-        self.curve * (share + CENTER_CURVE * NOISE * noise * noise)
+    /// The error of the centre's colour.
+    pub fn center_error(&self) -> f32 {
+        (CENTER_EDGE * self.edge).max(smooth_error(self.curve, self.slope, false))
     }
 }
 
@@ -289,7 +276,9 @@ mod tests {
         let pixel = |signatures: [u32; 9]| Look::at(&[Vec3::ZERO; 9], &signatures);
         assert_eq!(pixel([1, 1, 2, 1, 1, 2, 1, 1, 2]).busy, 0.0);
         assert_eq!(pixel([1, 2, 1, 2, 1, 2, 1, 2, 1]).busy, 1.0);
-        assert!(!pixel([7; 9]).suspect && pixel([7; 9]).inner);
+        assert!(
+            pixel([1, 2, 1, 2, 2, 2, 1, 2, 1]).inner && !pixel([1, 1, 1, 2, 2, 2, 1, 2, 1]).inner
+        );
     }
 
     /// Oracle: by hand. The four interleaved grids of one of 4 × 4 samples are grey 0, 0, 0 and 1: levels 0, 0, 0 and

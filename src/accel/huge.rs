@@ -3,7 +3,7 @@
 #![allow(unsafe_code, reason = "the advice to the system is a foreign function")]
 
 /// An empty vector with room for `count` elements, in large pages where the system has some.
-pub(super) fn vec_with_capacity<T>(count: usize) -> Vec<T> {
+pub(crate) fn vec_with_capacity<T>(count: usize) -> Vec<T> {
     let vec: Vec<T> = Vec::with_capacity(count);
     advise(&vec);
     vec

@@ -13,7 +13,7 @@ mod decide;
 mod division;
 mod extreme;
 mod frame;
-mod huge;
+pub(crate) mod huge;
 mod leaf;
 mod node;
 mod packet;

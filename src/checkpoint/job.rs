@@ -235,7 +235,7 @@ impl<'a> Job<'a> {
     pub fn into_rendering(self, effort: &Effort) -> Rendering {
         let state = self.state.into_inner().unwrap_or_else(PoisonError::into_inner);
         let State { film, accounts, outcome, .. } = state;
-        Rendering::of_blocks(film, Vec::new(), accounts.iter().flatten(), outcome, effort)
+        Rendering::of_blocks(film, accounts.iter().flatten(), outcome, effort)
     }
 
     fn kept(&self) -> MutexGuard<'_, Kept> {

@@ -8,7 +8,6 @@ use std::sync::{
 };
 
 use glam::DVec2;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::{
@@ -16,8 +15,8 @@ use super::{
     crew::{Crew, Sampler, in_turn, lock, trace_centers},
     demand::Demand,
     known::Known,
-    outlook::{Outlook, tile_of},
-    plane::{AT_ONCE, Area, Plane},
+    outlook::Outlook,
+    plane::{Area, Plane, Tiled},
     round::{Pixel, Round, Threshold, add_rays, is_disputed, is_picked},
 };
 use crate::{
@@ -38,7 +37,7 @@ pub(super) struct Adaptive {
     stages: Vec<Stage>,
     centers: Plane<Sample>,
     /// Corners of pixels; those not traced have no rays.
-    corners: Plane<Sample>,
+    corners: Tiled<Sample>,
     /// Whether all centres are traced.
     has_begun: bool,
     known: Known,
@@ -54,7 +53,7 @@ impl Adaptive {
             width,
             stages: stages(most),
             centers: Plane::new(area.grown(1), Sample::default()),
-            corners: Plane::new(area.corners(), Sample::default()),
+            corners: Tiled::new(area.corners()),
             has_begun: false,
             known: Known::new(area),
             spent: AtomicU64::new(0),
@@ -62,12 +61,13 @@ impl Adaptive {
     }
 
     /// Traces the centres of the area, and of the pixels around it, so that a part of a picture is that of the whole;
-    /// returns whether all are.
+    /// returns whether all are. Pixels are refined only by thresholds from `least` up.
     ///
     /// When `stop` says so, the pixels that are left have no samples, and nothing is to be refined.
     pub(super) fn begin<S: Sampler + Send>(
         &mut self,
         crew: &Crew<S>,
+        least: Threshold,
         stop: impl Fn() -> bool + Sync,
     ) -> bool {
         if !self.has_begun {
@@ -75,7 +75,7 @@ impl Adaptive {
             self.has_begun = !stop();
             let rays = self.centers.values().iter().map(|sample| u64::from(sample.rays));
             self.spent = AtomicU64::new(rays.sum());
-            self.known.look(crew, &self.stages, &self.centers);
+            self.known.look(crew, &self.stages, &self.centers, least);
         }
         self.has_begun
     }
@@ -136,8 +136,9 @@ impl Adaptive {
         let (area, outlooks) = (&self.area, &self.known.outlooks);
         // Corners belong to the pixels up and left of them too.
         let may_exceed = |x: i64, y: i64| {
-            let (column, row) = tile_of(area, x.max(area.x0), y.max(area.y0));
-            outlooks.nearest(column, row).may_exceed(threshold)
+            let (x, y) = (x.clamp(area.x0, area.x1 - 1), y.clamp(area.y0, area.y1 - 1));
+            let (column, row) = area.tile_of(x, y);
+            outlooks.at(column, row).may_exceed(threshold)
         };
         crew.run(self.corners.area(), false, stop, |sampler, scratch, tile| {
             let (left, top) = (tile.x0 - 1, tile.y0 - 1);
@@ -152,15 +153,18 @@ impl Adaptive {
                 return;
             }
             scratch.places.clear();
-            scratch.samples.clear();
             scratch.places.extend(wanted.iter().map(|&(x, y)| DVec2::new(x as f64, y as f64)));
-            sampler.sample(&scratch.places, &mut scratch.samples);
-            add_rays(&self.spent, &scratch.samples);
-            let mut traced = lock(&traced);
-            traced.extend(wanted.iter().zip(&scratch.samples).map(|(&(x, y), s)| (x, y, *s)));
+            let mut samples = Vec::with_capacity(wanted.len());
+            sampler.sample(&scratch.places, &mut samples);
+            add_rays(&self.spent, &samples);
+            lock(&traced).push((*tile, wanted, samples));
         });
-        for (x, y, sample) in traced.into_inner().unwrap_or_else(PoisonError::into_inner) {
-            *self.corners.at_mut(x, y) = sample;
+        for (tile, wanted, samples) in traced.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            let corners = self.corners.of_mut(&tile);
+            corners.resize(tile.len(), Sample::default());
+            for ((x, y), sample) in wanted.into_iter().zip(samples) {
+                corners[tile.place_of(x, y)] = sample;
+            }
         }
     }
 
@@ -173,15 +177,15 @@ impl Adaptive {
             x1: tile.x1.min(area.x1),
             y1: tile.y1.min(area.y1),
         };
-        let mut is_wanted = vec![false; tile.len()];
-        for (x, y) in self.known.above(&around, threshold) {
-            let pixel = self.known.pixels.at(x, y);
+        let (mut is_wanted, corners) = (vec![false; tile.len()], self.corners.of(tile));
+        for ((x, y), pixel) in self.known.above(&around, threshold) {
             if pixel.stage > 0 || !is_picked(threshold, x, y) {
                 continue;
             }
             for (x, y) in [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)] {
+                let is_traced = |place: usize| corners.get(place).is_some_and(|c| c.rays > 0);
                 if tile.contains(x, y)
-                    && self.corners.at(x, y).rays == 0
+                    && !is_traced(tile.place_of(x, y))
                     && (!pixel.suspect || is_disputed(centers, x, y))
                 {
                     is_wanted[tile.place_of(x, y)] = true;
@@ -206,8 +210,12 @@ impl Adaptive {
 
     /// The estimated error: root mean square of all channels, in levels of 255.
     pub(super) fn estimated_rmse(&self) -> f64 {
-        let sum: f64 = self.known.outlooks.values().iter().map(|tile| tile.expected).sum();
-        (sum / self.area.len().max(1) as f64).sqrt()
+        (self.squared_error() / self.area.len().max(1) as f64).sqrt()
+    }
+
+    /// The estimated squared error, summed over the pixels.
+    fn squared_error(&self) -> f64 {
+        self.known.outlooks.values().iter().map(|tile| tile.expected).sum()
     }
 
     /// The colours and the rays of the pixels so far.
@@ -235,23 +243,21 @@ impl Adaptive {
         let is_unsettled = |p: &&Pixel| {
             usize::from(p.stage) >= self.stages.len() && p.error > 0.0 && p.error >= limit
         };
-        self.known.pixels.values().iter().filter(is_unsettled).count()
+        self.known.pixels.tiles().iter().flatten().filter(is_unsettled).count()
     }
 
     /// What the next stages of all pixels are worth, and take.
     pub(super) fn demand(&self) -> Demand {
-        let parts: Vec<Demand> =
-            self.known.worths.values().par_chunks(AT_ONCE).map(Demand::of).collect();
-        // In the order of the pixels, on which sums depend.
-        parts.iter().fold(Demand::of(&[]), Demand::and)
+        self.known.demand()
     }
 
     pub(super) fn into_picture(self) -> Picture {
-        let Known { worths, colors, samples, .. } = self.known;
+        let squared_error = self.squared_error();
+        let Known { colors, samples, .. } = self.known;
         Picture {
             colors: colors.into_values(),
             samples: samples.into_values(),
-            errors: worths.values().iter().map(|worth| worth.expected).collect(),
+            squared_error,
             outcome: Outcome::default(),
         }
     }

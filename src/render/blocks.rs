@@ -21,7 +21,7 @@ const MOST_RAYS: u64 = 1 << 22;
 const SMALLEST: u32 = 16;
 const SMALLEST_ADAPTIVE: u32 = 64;
 const LARGEST_ADAPTIVE: u32 = 256;
-const LARGEST: u32 = 512;
+const LARGEST: u32 = 1024;
 
 /// A finished block of a picture.
 #[derive(Clone, Debug)]
@@ -34,8 +34,6 @@ pub struct Block {
     pub colors: Vec<Rgb>,
     /// The rays through each pixel.
     pub samples: Vec<u32>,
-    /// The estimated squared error of each pixel, in levels of 255.
-    pub errors: Vec<f32>,
     /// What it took and what it is worth.
     pub account: Account,
     /// How it ended.
@@ -117,7 +115,7 @@ pub fn blocks(part: &Tile, aa: AntiAliasing, goal: Goal) -> Vec<Tile> {
         sides.take_while(|side| *side > least).find(fits).unwrap_or(least)
     };
     let side = match aa {
-        AntiAliasing::None => LARGEST,
+        AntiAliasing::None => side(RAYS, 1, SMALLEST, LARGEST),
         AntiAliasing::Grid { side: cells } => side(RAYS, cells * cells, SMALLEST, LARGEST),
         AntiAliasing::Sequence { count } => side(RAYS, count, SMALLEST, LARGEST),
         AntiAliasing::Adaptive { most, .. } => {
@@ -170,7 +168,7 @@ mod tests {
     fn blocks_cover_each_pixel_once_whatever_the_mode() {
         let part = Tile { x0: 13, y0: 7, x1: 613, y1: 307 };
         for (mode, side) in [
-            ("none", 512),
+            ("none", 1024),
             ("grid:2", 512),
             ("grid:3", 256),
             ("grid:64", 16),

@@ -113,14 +113,14 @@ impl<S: Sampler + Send> Crew<'_, S> {
     ) {
         let idle: Mutex<Vec<(S, Scratch)>> = Mutex::new(Vec::new());
         let idle = || lock(&idle);
-        each_tile(area, |tile| {
+        area.tiles().into_par_iter().with_max_len(1).for_each(|tile| {
             if stop() {
                 return;
             }
             let worker = idle().pop();
             let (mut sampler, mut scratch) =
                 worker.unwrap_or_else(|| ((self.new_sampler)(), Scratch::default()));
-            work(&mut sampler, &mut scratch, tile);
+            work(&mut sampler, &mut scratch, &tile);
             idle().push((sampler, scratch));
             if counted {
                 self.meter.add(tile.len() as u64);
@@ -129,9 +129,10 @@ impl<S: Sampler + Send> Crew<'_, S> {
     }
 }
 
-/// Does `work` on every tile of `area`, on all threads.
-pub(super) fn each_tile(area: &Area, work: impl Fn(&Area) + Sync) {
-    area.tiles().into_par_iter().with_max_len(1).for_each(|tile| work(&tile));
+/// The sum of what `of` says of every tile of `area`, on all threads; in the order of the tiles, on which it depends.
+pub(super) fn sum_of_tiles(area: &Area, of: impl Fn(&Area) -> f64 + Sync + Send) -> f64 {
+    let parts: Vec<f64> = area.tiles().par_iter().map(of).collect();
+    parts.iter().sum()
 }
 
 /// The pixels of a tile in Morton order, so that any run of them is close together and their rays go the same way.

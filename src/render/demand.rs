@@ -52,38 +52,36 @@ pub(super) struct Demand {
 }
 
 impl Demand {
-    /// The demand of some pixels.
-    pub(super) fn of(worths: &[Worth]) -> Self {
-        let (rays, expected) = ([0; LEVELS], [0.0; LEVELS]);
-        let mut demand = Self { rays, expected, settled: 0.0, pixels: 0 };
-        for worth in worths {
-            demand.add(worth);
-        }
-        demand
+    /// The demand of so many pixels, of which nothing is known yet.
+    pub(super) fn of(pixels: usize) -> Self {
+        Self { rays: [0; LEVELS], expected: [0.0; LEVELS], settled: 0.0, pixels }
     }
 
-    /// The demand of these and other pixels.
+    /// What is known of these and of others of the same picture.
     pub(super) fn and(mut self, other: &Self) -> Self {
         for level in 0..LEVELS {
             self.rays[level] += other.rays[level];
             self.expected[level] += other.expected[level];
         }
         self.settled += other.settled;
-        self.pixels += other.pixels;
         self
     }
 
-    /// Adds a pixel.
-    fn add(&mut self, worth: &Worth) {
+    /// Takes in what is known of a pixel.
+    pub(super) fn add(&mut self, worth: &Worth) {
         let expected = f64::from(worth.expected);
-        self.pixels += 1;
         match level_of(worth) {
             Some(level) => {
                 self.rays[level] += worth.rays.ceil() as u64;
                 self.expected[level] += expected;
             }
-            None => self.settled += expected,
+            None => self.settle(expected),
         }
+    }
+
+    /// Takes in pixels that ask for no rays, and what they add to the picture's squared error.
+    pub(super) fn settle(&mut self, expected: f64) {
+        self.settled += expected;
     }
 
     /// The picture's squared error, summed over the pixels, once all above the level's threshold are refined.
@@ -124,7 +122,7 @@ mod tests {
     /// Oracle: levels counted by hand; a stage is above the threshold of its level and all lower ones.
     #[test]
     fn demand_is_counted_by_level() {
-        let mut demand = Demand::of(&[]);
+        let mut demand = Demand::of(6);
         assert_eq!(demand.level_for(1.0), None);
         let mut add = |per_ray: f32, rays: f32, expected: f32| {
             demand.add(&Worth { error: per_ray * rays, rays, expected });

@@ -21,6 +21,11 @@ const SHARE_OF_TIME: f64 = 0.3;
 /// Less time than this is not worth a step.
 const SHORTEST: Duration = Duration::from_millis(4);
 
+/// The threshold at which the ladder ends.
+fn least() -> Threshold {
+    Threshold::PerRay(at_step(LAST_STEP))
+}
+
 /// How a picture ends that is stopped.
 fn stopped() -> Outcome {
     Outcome { is_stopped: true, ..Outcome::default() }
@@ -78,7 +83,7 @@ impl Unfinished {
             if watch.keeps(&mut self) {
                 return (self.adaptive, stopped());
             }
-            if self.adaptive.begin(crew, || watch.interrupts()) {
+            if self.adaptive.begin(crew, least(), || watch.interrupts()) {
                 if let Some(outcome) = self.ending(wanted) {
                     return (self.adaptive, outcome);
                 }
@@ -131,7 +136,7 @@ impl Unfinished {
         watch: &Watch,
     ) -> (Adaptive, Outcome) {
         let before = self.adaptive.spent();
-        while !self.adaptive.begin(crew, || watch.interrupts()) {
+        while !self.adaptive.begin(crew, least(), || watch.interrupts()) {
             if watch.keeps(&mut self) {
                 return (self.adaptive, stopped());
             }

@@ -1,9 +1,5 @@
 //! What may hide between centres of one colour in the middle of others.
 
-use super::{
-    plane::{Area, Plane},
-    round::Pixel,
-};
 use crate::aa::estimate::all_alike;
 
 /// The centres that tell a pixel's colour: its own and those around it.
@@ -12,17 +8,16 @@ const CENTERS: u32 = 9;
 /// How many of the eight neighbours may have but little contrast.
 const CALM: usize = 2;
 
-/// The squared error, beyond what its own look tells, that a suspect pixel of `area` is expected to have whose eight
-/// neighbours have its colour: where nearly all of these differ from their own neighbours, the likeness is chance.
+/// The squared error, beyond what its own look tells, that a suspect pixel is expected to have whose eight neighbours
+/// have its colour: where nearly all of these differ from their own neighbours, the likeness is chance. `contrast_at`
+/// tells how much they do, and that those do not which are not known.
 ///
 /// What the pixel gets must not depend on it, or it would on places more than a pixel away.
-pub(super) fn hidden_error(area: &Area, pixels: &Plane<Pixel>, x: i64, y: i64) -> f32 {
+pub(super) fn hidden_error(contrast_at: impl Fn(i64, i64) -> f32, x: i64, y: i64) -> f32 {
     let mut contrasts = [0.0; 8];
     let around = (0..9).filter(|k| *k != 4).map(|k| (x + k % 3 - 1, y + k / 3 - 1));
     for (contrast, (x, y)) in contrasts.iter_mut().zip(around) {
-        if area.contains(x, y) {
-            *contrast = pixels.at(x, y).contrast;
-        }
+        *contrast = contrast_at(x, y);
     }
     contrasts.sort_unstable_by(f32::total_cmp);
     all_alike(CENTERS) * contrasts[CALM] / 8.0
@@ -35,15 +30,11 @@ mod tests {
     /// Oracle: by hand; 9 equal samples leave 2/(11 x 12) of the mean squared difference of the neighbours.
     #[test]
     fn likeness_amid_contrast_is_chance() {
-        let area = Area { x0: 0, y0: 0, x1: 5, y1: 3 };
-        let of = |contrast: fn(i64, i64) -> f32, x: i64| {
-            let pixel = |(x, y)| Pixel { contrast: contrast(x, y), ..Pixel::default() };
-            hidden_error(&area, &Plane::from_fn(area, pixel), x, 1)
-        };
         let all_but_two = |x: i64, y: i64| if y == 0 && x < 4 { 0.0 } else { 8.0 * 6600.0 };
-        assert!((of(all_but_two, 3) - 100.0).abs() < 1e-3);
-        // An edge has contrast at its side alone; nothing is known beyond the area.
-        assert_eq!(of(|x, _| if x > 1 { 9e4 } else { 0.0 }, 1), 0.0);
-        assert_eq!(of(|_, _| 9e4, 0), 0.0);
+        assert!((hidden_error(all_but_two, 3, 1) - 100.0).abs() < 1e-3);
+        let all_but_three = |x: i64, y: i64| if y == 0 || x > 3 { 0.0 } else { 9e4 };
+        assert_eq!(hidden_error(all_but_three, 3, 1), 0.0);
+        // An edge has contrast at its side alone.
+        assert_eq!(hidden_error(|x, _| if x > 1 { 9e4 } else { 0.0 }, 1, 1), 0.0);
     }
 }

@@ -2,18 +2,20 @@
 
 use std::sync::{Mutex, PoisonError};
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::{
     crew::{Crew, Least, Sampler, in_turn, lock},
+    demand::Demand,
     hidden::hidden_error,
     look::{ONE_COLOR, Window, corrected, skips_cells},
-    outlook::{Outlook, Worth, outlooks, tile_of},
-    plane::{Area, Plane},
+    outlook::{Outlook, Worth},
+    plane::{Area, Plane, Tiled},
     round::{Chosen, Pixel, Threshold, is_disputed, is_picked},
 };
 use crate::{
-    aa::{Sample, refined::Stage},
+    aa::{Sample, estimate::Look, refined::Stage},
     color::Rgb,
 };
 
@@ -21,37 +23,39 @@ use crate::{
 /// those of its neighbours, may all have met the same colour.
 const LEAST_IN_CELLS: Least = Least { samples: 8, if_alike: 8 };
 
+/// Tiles that a thread takes at least, where all are gone through.
+const TILES_AT_ONCE: usize = 64;
+
 /// What is known of the pixels of an area.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Known {
-    pub(super) pixels: Plane<Pixel>,
+    /// Those of the tiles in which any is suspect or may be refined.
+    pub(super) pixels: Tiled<Pixel>,
+    /// What more rays are worth to each tile.
+    pub(super) outlooks: Plane<Outlook>,
     pub(super) colors: Plane<Rgb>,
     /// The rays through each pixel.
     pub(super) samples: Plane<u32>,
-    /// What more rays are worth to each pixel.
-    pub(super) worths: Plane<Worth>,
-    /// The same by tile.
-    pub(super) outlooks: Plane<Outlook>,
 }
 
 impl Known {
     /// Nothing.
     pub(super) fn new(area: &Area) -> Self {
         Self {
-            pixels: Plane::new(*area, Pixel::default()),
+            pixels: Tiled::new(*area),
+            outlooks: Plane::new(area.grid(), Outlook::default()),
             colors: Plane::new(*area, Rgb::ZERO),
             samples: Plane::new(*area, 0),
-            worths: Plane::new(*area, Worth::default()),
-            outlooks: outlooks(area),
         }
     }
 
-    /// What the `centers` say of each pixel.
+    /// What the `centers` say of each pixel; thresholds to refine by go down to `least`.
     pub(super) fn look<S: Sampler + Send>(
         &mut self,
         crew: &Crew<S>,
         stages: &[Stage],
         centers: &Plane<Sample>,
+        least: Threshold,
     ) {
         let area = *self.pixels.area();
         let has_thin = (crew.new_sampler)().has_thin();
@@ -59,49 +63,31 @@ impl Known {
         let known = Mutex::new(&mut *self);
         let never = || false;
         crew.run(&area, false, never, |sampler, _, tile| {
-            let least = |x: i64, y: i64| {
-                if has_thin { sampler.least_samples(x as u32, y as u32) } else { Least::default() }
-            };
-            let looks = Window::of_centers(tile, centers).looks();
-            let (count, columns) = (tile.len(), centers.columns(tile));
-            let (mut pixels, mut worths) = (Vec::with_capacity(count), Vec::with_capacity(count));
-            let (mut colors, mut samples) = (Vec::with_capacity(count), Vec::with_capacity(count));
-            for (y, looks) in (tile.y0..tile.y1).zip(looks.chunks(tile.width())) {
-                let rows = [y - 1, y, y + 1].map(|y| centers.nearest_row(y));
-                for ((x, place), look) in (tile.x0..tile.x1).zip(columns.clone()).zip(looks) {
-                    let center = &rows[1][place];
-                    let skips = look.suspect && skips_cells(centers, x, y, look.contrast);
-                    let cells = if skips { LEAST_IN_CELLS } else { Least::default() };
-                    let error = look.center_error(look.inner);
-                    let thin = least(x, y);
-                    let pixel = Pixel {
-                        suspect: look.suspect,
-                        error,
-                        is_thin: thin.is_some(),
-                        least: thin.max(cells),
-                        contrast: look.contrast,
-                        busy: look.busy,
-                        ..Pixel::default()
-                    };
-                    colors.push(if look.inner { corrected(&rows, place) } else { center.color });
-                    samples.push(u32::from(center.rays > 0));
-                    worths.push(Worth::of(&pixel, error, stages, center));
-                    pixels.push(pixel);
+            let window = Window::of_centers(tile, centers);
+            let suspects = window.suspects();
+            let mut pixels = pixels_of(tile, &window, &suspects, centers);
+            for (pixel, (x, y)) in pixels.iter_mut().zip(tile.pixels()) {
+                if has_thin {
+                    let thin = sampler.least_samples(x as u32, y as u32);
+                    pixel.is_thin = thin.is_some();
+                    pixel.least = pixel.least.max(thin);
                 }
+                pixel.worth = Worth::of(pixel, pixel.error, stages, centers.at(x, y));
             }
-            let outlook = Outlook::of(worths.iter());
-            let is_of_one_color = |pixel: &Pixel| pixel.suspect && pixel.contrast < ONE_COLOR;
-            if pixels.iter().any(is_of_one_color) {
-                let found = tile.pixels().zip(&pixels).filter(|(_, pixel)| is_of_one_color(pixel));
-                lock(&of_one_color).extend(found.map(|(place, _)| place));
-            }
+            let alike = suspects.iter().filter(|(_, look)| look.contrast < ONE_COLOR);
+            lock(&of_one_color).extend(alike.map(|(place, _)| tile.pixel_at(*place)));
+            let colors = colors_of(tile, &suspects, centers);
+            let samples = tile.pixels().map(|(x, y)| u32::from(centers.at(x, y).rays > 0));
+            let samples = samples.collect();
+            let outlook = Outlook::of(&pixels);
             let mut known = lock(&known);
-            known.pixels.put(tile, pixels);
+            let (column, row) = area.tile_of(tile.x0, tile.y0);
+            *known.outlooks.at_mut(column, row) = outlook;
             known.colors.put(tile, colors);
             known.samples.put(tile, samples);
-            known.worths.put(tile, worths);
-            let (column, row) = tile_of(&area, tile.x0, tile.y0);
-            *known.outlooks.at_mut(column, row) = outlook;
+            if !suspects.is_empty() || outlook.may_exceed(least) || stages.is_empty() {
+                *known.pixels.of_mut(tile) = pixels;
+            }
         });
         self.expect_hidden(of_one_color.into_inner().unwrap_or_else(PoisonError::into_inner));
     }
@@ -112,39 +98,37 @@ impl Known {
         // Sums depend on their order, which that of the tiles must not.
         places.sort_unstable_by_key(|&(x, y)| (y, x));
         for (x, y) in places {
-            let hidden = hidden_error(&area, &self.pixels, x, y);
-            self.worths.at_mut(x, y).expected += hidden;
-            let (column, row) = tile_of(&area, x, y);
+            let contrast_at = |x, y| self.pixels.get(x, y).map_or(0.0, |pixel| pixel.contrast);
+            let hidden = hidden_error(contrast_at, x, y);
+            if let Some(pixel) = self.pixels.get_mut(x, y) {
+                pixel.worth.expected += hidden;
+            }
+            let (column, row) = area.tile_of(x, y);
             self.outlooks.at_mut(column, row).expected += f64::from(hidden);
         }
     }
 
-    /// The pixels of a part that are above the threshold, row by row.
+    /// The pixels of a part that are above the threshold, tile by tile.
     pub(super) fn above(
         &self,
         part: &Area,
         threshold: Threshold,
-    ) -> impl Iterator<Item = (i64, i64)> {
-        let (first, columns) = (part.x0, self.worths.columns(part));
-        (part.y0..part.y1).flat_map(move |y| {
-            let row = self.worths.nearest_row(y)[columns.clone()].iter().enumerate();
-            row.filter(move |(_, worth)| worth.exceeds(threshold))
-                .map(move |(column, _)| (first + column as i64, y))
-        })
+    ) -> impl Iterator<Item = ((i64, i64), &Pixel)> {
+        self.pixels.within(part).filter(move |(_, pixel)| pixel.worth.exceeds(threshold))
     }
 
     /// Takes out the pixels of a tile that are above the threshold, so that those close together are close in the list.
     pub(super) fn choose(&mut self, tile: &Area, threshold: Threshold) -> Vec<Chosen> {
-        let (column, row) = tile_of(self.pixels.area(), tile.x0, tile.y0);
-        let mut chosen = Vec::new();
+        let (column, row) = self.pixels.area().tile_of(tile.x0, tile.y0);
         if !self.outlooks.at(column, row).may_exceed(threshold) {
-            return chosen;
+            return Vec::new();
         }
+        let pixels = self.pixels.of_mut(tile);
+        let mut chosen = Vec::new();
         for (x, y) in in_turn(tile) {
-            let worth = *self.worths.at(x, y);
-            if worth.exceeds(threshold) && is_picked(threshold, x, y) {
-                let pixel = std::mem::take(self.pixels.at_mut(x, y));
-                chosen.push(Chosen { x, y, pixel, worth, has_changed: false });
+            let pixel = &mut pixels[tile.place_of(x, y)];
+            if pixel.worth.exceeds(threshold) && is_picked(threshold, x, y) {
+                chosen.push(Chosen { x, y, pixel: std::mem::take(pixel), has_changed: false });
             }
         }
         chosen
@@ -158,7 +142,8 @@ impl Known {
         centers: &Plane<Sample>,
         threshold: Threshold,
     ) {
-        for Chosen { x, y, mut pixel, worth, has_changed } in chosen {
+        let pixels = self.pixels.of_mut(tile);
+        for Chosen { x, y, mut pixel, has_changed } in chosen {
             if let (true, Some(refined)) = (has_changed, &pixel.refined) {
                 *self.colors.at_mut(x, y) = refined.color();
                 // Corners that only neighbours wanted do not count, or it would depend on whether those are rendered.
@@ -168,13 +153,63 @@ impl Known {
             if threshold.is_final() {
                 pixel.refined = None;
             }
-            *self.worths.at_mut(x, y) = worth;
-            *self.pixels.at_mut(x, y) = pixel;
+            pixels[tile.place_of(x, y)] = pixel;
         }
-        let columns = self.worths.columns(tile);
-        let rows = (tile.y0..tile.y1).map(|y| &self.worths.nearest_row(y)[columns.clone()]);
-        let outlook = Outlook::of(rows.flatten());
-        let (column, row) = tile_of(self.pixels.area(), tile.x0, tile.y0);
+        let outlook = Outlook::of(pixels);
+        let (column, row) = self.pixels.area().tile_of(tile.x0, tile.y0);
         *self.outlooks.at_mut(column, row) = outlook;
     }
+
+    /// What the next stages of all pixels are worth, and take.
+    pub(super) fn demand(&self) -> Demand {
+        let tiles = self.pixels.tiles().par_chunks(TILES_AT_ONCE);
+        let outlooks = self.outlooks.values().par_chunks(TILES_AT_ONCE);
+        let of_some = |(tiles, outlooks): (&[Vec<Pixel>], &[Outlook])| {
+            let mut demand = Demand::of(0);
+            for (pixels, outlook) in tiles.iter().zip(outlooks) {
+                match pixels.as_slice() {
+                    [] => demand.settle(outlook.expected),
+                    pixels => pixels.iter().for_each(|pixel| demand.add(&pixel.worth)),
+                }
+            }
+            demand
+        };
+        let parts: Vec<Demand> = tiles.zip(outlooks).map(of_some).collect();
+        // In the order of the tiles, on which sums depend.
+        parts.iter().fold(Demand::of(self.pixels.area().len()), Demand::and)
+    }
+}
+
+/// The pixels of a tile, row by row, as their centres and the looks of those that are suspect tell.
+fn pixels_of(
+    tile: &Area,
+    window: &Window,
+    suspects: &[(usize, Look)],
+    centers: &Plane<Sample>,
+) -> Vec<Pixel> {
+    let smooth = |error| Pixel { error, ..Pixel::default() };
+    let mut pixels: Vec<Pixel> = window.smooth_errors(true).into_iter().map(smooth).collect();
+    for (place, look) in suspects {
+        let (x, y) = tile.pixel_at(*place);
+        let skips = skips_cells(centers, x, y, look.contrast);
+        pixels[*place] = Pixel {
+            suspect: true,
+            error: look.center_error(),
+            least: if skips { LEAST_IN_CELLS } else { Least::default() },
+            contrast: look.contrast,
+            busy: look.busy,
+            ..Pixel::default()
+        };
+    }
+    pixels
+}
+
+/// Their colours, corrected where the neighbours at the sides met the same.
+fn colors_of(tile: &Area, suspects: &[(usize, Look)], centers: &Plane<Sample>) -> Vec<Rgb> {
+    let mut colors = corrected(tile, centers);
+    for (place, _) in suspects.iter().filter(|(_, look)| !look.inner) {
+        let (x, y) = tile.pixel_at(*place);
+        colors[*place] = centers.at(x, y).color;
+    }
+    colors
 }

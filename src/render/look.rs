@@ -4,7 +4,11 @@ use glam::Vec3;
 
 use super::plane::{Area, Plane, TILE_SIDE};
 use crate::{
-    aa::{Sample, estimate::Look, levels::levels},
+    aa::{
+        Sample,
+        estimate::{Look, smooth_error},
+        levels::levels,
+    },
     color::Rgb,
 };
 
@@ -54,49 +58,61 @@ impl Window {
         Self::new(tile, centers, |sample| (sample.color, sample.signature))
     }
 
-    /// The looks of the tile's pixels, row by row.
-    pub(super) fn looks(&self) -> Vec<Look> {
-        let (width, height) = (self.around.width(), self.around.height());
-        let mut looks = Vec::with_capacity((width - 2) * (height - 2));
-        for row in 1..height - 1 {
-            self.add_row(row * width, &mut looks);
+    /// The estimated squared error of each of the tile's centres, row by row, as if their neighbours had met the same;
+    /// `corrected` is whether the second-order term of the box integral is added to its colour.
+    pub(super) fn smooth_errors(&self, corrected: bool) -> Vec<f32> {
+        let count = self.pixels();
+        let mut errors = Vec::with_capacity(self.around.len());
+        for [above, at, below] in self.rows() {
+            let (mut curve, mut slope) = ([0.0; SIDE], [0.0; SIDE]);
+            for channel in &self.levels {
+                let row = |start: usize| &channel[start..start + count];
+                let (west, here, east) = (row(at), row(at + 1), row(at + 2));
+                let (north, south) = (row(above + 1), row(below + 1));
+                for k in 0..count {
+                    let across = west[k] + east[k] - 2.0 * here[k];
+                    let down = north[k] + south[k] - 2.0 * here[k];
+                    let (level, upright) = (west[k] - east[k], north[k] - south[k]);
+                    curve[k] += across * across + down * down;
+                    slope[k] += level * level + upright * upright;
+                }
+            }
+            let each = curve[..count].iter().zip(&slope);
+            errors.extend(each.map(|(c, s)| smooth_error(c / 3.0, s / 3.0, corrected)));
         }
-        looks
+        errors
     }
 
-    /// Adds the looks of the row whose first place in the window is `middle`.
-    fn add_row(&self, middle: usize, looks: &mut Vec<Look>) {
+    /// The pixels of the tile whose neighbours' rays met anything else: where in it they are, counted row by row, and
+    /// their looks.
+    pub(super) fn suspects(&self) -> Vec<(usize, Look)> {
+        let mut suspects = Vec::new();
+        let count = self.pixels();
+        for (row, starts) in self.rows().enumerate() {
+            let mut differ = [0; SIDE];
+            let middle = starts[1] + 1;
+            let centers = &self.signatures[middle..middle + count];
+            for start in starts.into_iter().flat_map(|start| start..start + 3) {
+                let signatures = &self.signatures[start..start + count];
+                for k in 0..count {
+                    differ[k] |= signatures[k] ^ centers[k];
+                }
+            }
+            let others = (0..count).filter(|&k| differ[k] != 0);
+            suspects.extend(others.map(|k| (row * count + k, self.look(middle + k))));
+        }
+        suspects
+    }
+
+    /// Pixels in a row of the tile.
+    fn pixels(&self) -> usize {
+        (self.around.width() - 2).min(SIDE)
+    }
+
+    /// Where in the window each row of the tile begins, one pixel before its first, with the row above and below.
+    fn rows(&self) -> impl Iterator<Item = [usize; 3]> + use<> {
         let width = self.around.width();
-        let pixels = (width - 2).min(SIDE);
-        let (mut curve, mut slope) = ([0.0; SIDE], [0.0; SIDE]);
-        let rows = [middle - width, middle, middle + width].map(|start| start..start + width);
-        for channel in &self.levels {
-            let [above, at, below] = rows.clone().map(|row| &channel[row]);
-            for k in 0..pixels {
-                let (west, here, east) = (at[k], at[k + 1], at[k + 2]);
-                let (north, south) = (above[k + 1], below[k + 1]);
-                let across = west + east - 2.0 * here;
-                let down = north + south - 2.0 * here;
-                curve[k] += across * across + down * down;
-                slope[k] += (west - east) * (west - east) + (north - south) * (north - south);
-            }
-        }
-        let mut differ = [0; SIDE];
-        let centers = &self.signatures[middle + 1..];
-        for row in rows {
-            let signatures = &self.signatures[row];
-            for k in 0..pixels {
-                let of = |place: usize| signatures[place] ^ centers[k];
-                differ[k] |= of(k) | of(k + 1) | of(k + 2);
-            }
-        }
-        looks.extend((0..pixels).map(|k| {
-            if differ[k] == 0 {
-                Look::smooth(curve[k] / 3.0, slope[k] / 3.0)
-            } else {
-                self.look(middle + 1 + k)
-            }
-        }));
+        (1..self.around.height() - 1).map(move |row| [row - 1, row, row + 1].map(|row| row * width))
     }
 
     /// The look of the pixel at a place of the window.
@@ -138,14 +154,20 @@ pub(super) fn skips_cells(centers: &Plane<Sample>, x: i64, y: i64, contrast: f32
             || ![(-1, 0), (1, 0), (0, -1), (0, 1)].iter().all(|&(dx, dy)| is_own(dx, dy)))
 }
 
-/// The colour of the centre at a place in the middle one of three rows, in all of which it has neighbours, with the
-/// second-order term of the integral over the pixel: c + (E + W + N + S - 4c)/24.
-#[inline]
-pub(super) fn corrected([above, row, below]: &[&[Sample]; 3], place: usize) -> Rgb {
-    let center = row[place].color;
-    let (west, east) = (row[place - 1].color, row[place + 1].color);
-    let sides = west + east + above[place].color + below[place].color;
-    (center + (sides - center * 4.0) / 24.0).max(Rgb::ZERO).min(Rgb::ONE)
+/// The colours of the tile's centres, row by row, with the second-order term of the integral over the pixel: c + (E + W +
+/// N + S - 4c)/24.
+pub(super) fn corrected(tile: &Area, centers: &Plane<Sample>) -> Vec<Rgb> {
+    let mut colors = Vec::with_capacity(tile.len());
+    for y in tile.y0..tile.y1 {
+        let [above, row, below] = [y - 1, y, y + 1].map(|y| centers.nearest_row(y));
+        colors.extend(centers.columns(tile).map(|place| {
+            let center = row[place].color;
+            let (west, east) = (row[place - 1].color, row[place + 1].color);
+            let sides = west + east + above[place].color + below[place].color;
+            (center + (sides - center * 4.0) / 24.0).max(Rgb::ZERO).min(Rgb::ONE)
+        }));
+    }
+    colors
 }
 
 #[cfg(test)]

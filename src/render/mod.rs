@@ -113,9 +113,6 @@ pub struct Progress {
 pub struct Rendering {
     /// The picture.
     pub film: Film,
-    /// The estimated squared error of each pixel, in levels of 255, in the order of [`Film::pixels`]; empty if they
-    /// were not kept.
-    pub errors: Vec<f32>,
     /// The picture's estimated error against the exact average over each pixel: root mean square of all channels, in levels of
     /// 255; `None` by the classical rules, which estimate nothing.
     pub estimated_rmse: Option<f64>,
@@ -135,7 +132,6 @@ impl Rendering {
     /// The picture `film` of blocks with these accounts, in the order of their numbers.
     pub(crate) fn of_blocks<'a>(
         film: Film,
-        errors: Vec<f32>,
         accounts: impl Iterator<Item = &'a Account>,
         outcome: Outcome,
         effort: &Effort,
@@ -150,7 +146,6 @@ impl Rendering {
             seconds: effort.seconds,
             depth: effort.depth,
             film,
-            errors,
         }
     }
 }

@@ -2,10 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{
-    plane::{Area, Plane, TILE_SIDE},
-    round::{Pixel, Threshold},
-};
+use super::round::{Pixel, Threshold};
 use crate::aa::{Sample, refined::Stage};
 
 /// Rays that the corners of a suspect pixel cost, most being shared or not traced; and those of one that is not
@@ -62,8 +59,8 @@ pub(super) struct Outlook {
 
 impl Outlook {
     /// The outlook of a tile's pixels, row by row.
-    pub(super) fn of<'w>(worths: impl Iterator<Item = &'w Worth>) -> Self {
-        worths.fold(Self::default(), |outlook, worth| {
+    pub(super) fn of(pixels: &[Pixel]) -> Self {
+        pixels.iter().fold(Self::default(), |outlook, Pixel { worth, .. }| {
             let (error, rays) = (worth.error, worth.rays);
             let per_ray = if error > 0.0 { error / rays } else { 0.0 };
             Self {
@@ -96,17 +93,4 @@ impl Outlook {
                 }
             }
     }
-}
-
-/// Room for the outlooks of the tiles of `area`.
-pub(super) fn outlooks(area: &Area) -> Plane<Outlook> {
-    let side = TILE_SIDE as usize;
-    let (columns, rows) = (area.width().div_ceil(side), area.height().div_ceil(side));
-    let tiles = Area { x0: 0, y0: 0, x1: columns as i64, y1: rows as i64 };
-    Plane::new(tiles, Outlook::default())
-}
-
-/// Column and row of the tile of `area` that holds a pixel.
-pub(super) fn tile_of(area: &Area, x: i64, y: i64) -> (i64, i64) {
-    ((x - area.x0) / i64::from(TILE_SIDE), (y - area.y0) / i64::from(TILE_SIDE))
 }

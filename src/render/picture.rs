@@ -20,8 +20,8 @@ pub struct Picture {
     pub colors: Vec<Rgb>,
     /// The rays through each pixel.
     pub samples: Vec<u32>,
-    /// The estimated squared error of each pixel, in levels of 255.
-    pub errors: Vec<f32>,
+    /// The estimated squared error, summed over the pixels, in levels of 255.
+    pub squared_error: f64,
     /// How it ended.
     pub outcome: Outcome,
 }
@@ -29,19 +29,13 @@ pub struct Picture {
 impl Picture {
     /// The estimated error: root mean square of all channels, in levels of 255.
     pub fn estimated_rmse(&self) -> f64 {
-        (self.squared_error() / self.errors.len().max(1) as f64).sqrt()
-    }
-
-    /// The estimated squared error, summed over the pixels.
-    fn squared_error(&self) -> f64 {
-        self.errors.iter().copied().map(f64::from).sum::<f64>()
+        (self.squared_error / self.colors.len().max(1) as f64).sqrt()
     }
 
     pub(super) fn into_block(self, number: usize, place: Tile, rays: RayCounts) -> Block {
-        let (squared_error, unsettled) = (self.squared_error(), self.outcome.unsettled as u64);
-        let account = Account { rays, squared_error, unsettled };
-        let Self { colors, samples, errors, outcome, .. } = self;
-        Block { number, place, colors, samples, errors, account, outcome }
+        let Self { colors, samples, squared_error, outcome } = self;
+        let account = Account { rays, squared_error, unsettled: outcome.unsettled as u64 };
+        Block { number, place, colors, samples, account, outcome }
     }
 }
 
@@ -91,9 +85,10 @@ pub(super) fn picture_watched<S: Sampler + Send>(
             let (adaptive, outcome) = match goal {
                 Goal::Mode => {
                     let mut adaptive = Adaptive::new(&area, width, most);
-                    adaptive.begin(&crew, || false);
+                    let threshold = Threshold::Error(error * error);
+                    adaptive.begin(&crew, threshold, || false);
                     meter.reach(0.5);
-                    adaptive.refine(&crew, Threshold::Error(error * error), true, || false);
+                    adaptive.refine(&crew, threshold, true, || false);
                     let unsettled = adaptive.unsettled(error * error);
                     (adaptive, Outcome { unsettled, ..Outcome::default() })
                 }

@@ -3,10 +3,11 @@
 use std::sync::{Mutex, PoisonError};
 
 use glam::{DVec2, Vec3};
+use rayon::prelude::*;
 
 use super::{
     Outcome, Picture,
-    crew::{Crew, Sampler, each_tile, in_turn, lock, trace_centers},
+    crew::{Crew, Sampler, in_turn, lock, sum_of_tiles, trace_centers},
     look::Window,
     plane::{Area, Plane},
 };
@@ -31,16 +32,18 @@ const BATCH: usize = 64;
 pub(super) fn centers<S: Sampler + Send>(crew: &Crew<S>, area: &Area) -> Picture {
     let mut centers = Plane::new(*area, Sample::default());
     trace_centers(crew, &mut centers, || false);
-    let errors = Mutex::new(Plane::new(*area, 0.0));
-    each_tile(area, |tile| {
+    let squared_error = sum_of_tiles(area, |tile| {
         let window = Window::of_centers(tile, &centers);
-        let own: Vec<f32> = window.looks().iter().map(|look| look.center_error(false)).collect();
-        lock(&errors).put(tile, own);
+        let mut errors = window.smooth_errors(false);
+        for (place, look) in window.suspects() {
+            errors[place] = look.center_error();
+        }
+        errors.into_iter().map(f64::from).sum()
     });
     Picture {
-        colors: centers.into_values().into_iter().map(|sample| sample.color).collect(),
+        colors: centers.values().par_iter().map(|sample| sample.color).collect(),
         samples: vec![1; area.len()],
-        errors: errors.into_inner().unwrap_or_else(PoisonError::into_inner).into_values(),
+        squared_error,
         outcome: Outcome::default(),
     }
 }
@@ -137,21 +140,19 @@ fn even<S: Sampler + Send>(
         },
     );
     let cells = cells.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let errors = Mutex::new(Plane::new(*area, 0.0));
-    each_tile(area, |tile| {
+    let squared_error = sum_of_tiles(area, |tile| {
         let window = Window::new(tile, &cells, |cell| (cell.color, cell.signature));
-        let looks = window.looks();
-        let own = tile.pixels().zip(&looks).map(|((x, y), look)| {
-            let cell = cells.at(x, y);
-            let hidden = cell.alike && look.suspect;
-            cell.error + if hidden { unseen * look.contrast } else { 0.0 }
+        let hidden = window.suspects().into_iter().map(|(place, look)| {
+            let (x, y) = tile.pixel_at(place);
+            if cells.at(x, y).alike { unseen * look.contrast } else { 0.0 }
         });
-        lock(&errors).put(tile, own.collect::<Vec<_>>());
+        let seen = tile.pixels().map(|(x, y)| cells.at(x, y).error);
+        seen.chain(hidden).map(f64::from).sum()
     });
     Picture {
-        colors: cells.values().iter().map(|cell| cell.color).collect(),
+        colors: cells.values().par_iter().map(|cell| cell.color).collect(),
         samples: vec![rays; area.len()],
-        errors: errors.into_inner().unwrap_or_else(PoisonError::into_inner).into_values(),
+        squared_error,
         outcome: Outcome::default(),
     }
 }

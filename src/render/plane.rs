@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     aa::Sample,
+    accel::huge,
     film::{Tile, tiles},
 };
 
@@ -12,7 +13,7 @@ use crate::{
 pub(super) const TILE_SIDE: u32 = 16;
 
 /// Values that a thread takes at least, where all of a plane's are gone through.
-pub(super) const AT_ONCE: usize = 1 << 14;
+const AT_ONCE: usize = 1 << 14;
 
 /// A rectangle of pixels, half open, in columns and rows of the whole picture; those of its apron have -1 and width or
 /// height.
@@ -53,6 +54,12 @@ impl Area {
         (y - self.y0) as usize * self.width() + (x - self.x0) as usize
     }
 
+    /// The pixel at a place counted row by row.
+    pub(super) fn pixel_at(&self, place: usize) -> (i64, i64) {
+        let (row, column) = (place / self.width(), place % self.width());
+        (self.x0 + column as i64, self.y0 + row as i64)
+    }
+
     /// The area and `apron` pixels about it.
     pub(super) fn grown(&self, apron: i64) -> Self {
         Self { x0: self.x0 - apron, y0: self.y0 - apron, x1: self.x1 + apron, y1: self.y1 + apron }
@@ -75,6 +82,31 @@ impl Area {
             .collect()
     }
 
+    /// The columns and rows of these tiles.
+    pub(super) fn grid(&self) -> Self {
+        let side = TILE_SIDE as usize;
+        let (columns, rows) = (self.width().div_ceil(side), self.height().div_ceil(side));
+        Self { x0: 0, y0: 0, x1: columns as i64, y1: rows as i64 }
+    }
+
+    /// Column and row of the tile that holds a pixel.
+    #[inline]
+    pub(super) fn tile_of(&self, x: i64, y: i64) -> (i64, i64) {
+        debug_assert!(self.contains(x, y), "({x}, {y}) in {self:?}");
+        let tile = |place: i64| (place as u64 / u64::from(TILE_SIDE)) as i64;
+        (tile(x - self.x0), tile(y - self.y0))
+    }
+
+    /// What two areas have in common.
+    fn common(&self, other: &Self) -> Self {
+        Self {
+            x0: self.x0.max(other.x0),
+            y0: self.y0.max(other.y0),
+            x1: self.x1.min(other.x1),
+            y1: self.y1.min(other.y1),
+        }
+    }
+
     /// The pixels row by row.
     pub(super) fn pixels(&self) -> impl Iterator<Item = (i64, i64)> + use<> {
         let area = *self;
@@ -93,8 +125,10 @@ impl<T: Clone + Send + Sync> Plane<T> {
     /// The same value everywhere. All threads write it, because pages of memory take their time when they are first
     /// written to.
     pub(super) fn new(area: Area, value: T) -> Self {
+        let mut values = huge::vec_with_capacity(area.len());
         let places = (0..area.len()).into_par_iter().with_min_len(AT_ONCE);
-        Self { area, values: places.map(|_| value.clone()).collect() }
+        places.map(|_| value.clone()).collect_into_vec(&mut values);
+        Self { area, values }
     }
 }
 
@@ -157,6 +191,87 @@ impl<T> Plane<T> {
             let start = self.area.place_of(tile.x0, y);
             self.values[start..start + row.len()].swap_with_slice(row);
         }
+    }
+}
+
+/// A value for each pixel of those tiles of an area of which any are known.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct Tiled<T> {
+    area: Area,
+    /// Row by row; empty if none are known.
+    tiles: Plane<Vec<T>>,
+}
+
+impl<T: Clone + Send + Sync> Tiled<T> {
+    /// Nothing known.
+    pub(super) fn new(area: Area) -> Self {
+        Self { area, tiles: Plane::new(area.grid(), Vec::new()) }
+    }
+}
+
+impl<T> Tiled<T> {
+    pub(super) fn area(&self) -> &Area {
+        &self.area
+    }
+
+    /// The values of all tiles.
+    pub(super) fn tiles(&self) -> &[Vec<T>] {
+        self.tiles.values()
+    }
+
+    /// The values of a tile, row by row.
+    pub(super) fn of(&self, tile: &Area) -> &[T] {
+        let (column, row) = self.area.tile_of(tile.x0, tile.y0);
+        self.tiles.at(column, row)
+    }
+
+    /// The values of a tile, row by row, to be replaced.
+    pub(super) fn of_mut(&mut self, tile: &Area) -> &mut Vec<T> {
+        let (column, row) = self.area.tile_of(tile.x0, tile.y0);
+        self.tiles.at_mut(column, row)
+    }
+
+    /// The value of a pixel; outside of the area none is known.
+    #[inline]
+    pub(super) fn get(&self, x: i64, y: i64) -> Option<&T> {
+        if !self.area.contains(x, y) {
+            return None;
+        }
+        let (column, row) = self.area.tile_of(x, y);
+        self.tiles.at(column, row).get(self.tile(column, row).place_of(x, y))
+    }
+
+    /// The value of a pixel of the area.
+    pub(super) fn get_mut(&mut self, x: i64, y: i64) -> Option<&mut T> {
+        let (column, row) = self.area.tile_of(x, y);
+        let place = self.tile(column, row).place_of(x, y);
+        self.tiles.at_mut(column, row).get_mut(place)
+    }
+
+    /// The known values of the pixels of `part`, which has some and is within the area, tile by tile.
+    pub(super) fn within(&self, part: &Area) -> impl Iterator<Item = ((i64, i64), &T)> {
+        let ((left, top), (right, bottom)) =
+            (self.area.tile_of(part.x0, part.y0), self.area.tile_of(part.x1 - 1, part.y1 - 1));
+        let tiles = Area { x0: left, y0: top, x1: right + 1, y1: bottom + 1 };
+        let known = tiles
+            .pixels()
+            .map(|(column, row)| (self.tile(column, row), self.tiles.at(column, row)));
+        let part = *part;
+        known.filter(|(_, values)| !values.is_empty()).flat_map(move |(tile, values)| {
+            let piece = tile.common(&part);
+            (piece.y0..piece.y1).flat_map(move |y| {
+                let start = tile.place_of(piece.x0, y);
+                (piece.x0..piece.x1).zip(&values[start..]).map(move |(x, value)| ((x, y), value))
+            })
+        })
+    }
+
+    /// The tile in a column and row of tiles.
+    #[inline]
+    fn tile(&self, column: i64, row: i64) -> Area {
+        let side = i64::from(TILE_SIDE);
+        let (x0, y0) = (self.area.x0 + column * side, self.area.y0 + row * side);
+        Area { x0, y0, x1: x0 + side, y1: y0 + side }.common(&self.area)
     }
 }
 

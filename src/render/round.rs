@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     crew::{Least, Sampler, Scratch},
     outlook::Worth,
-    plane::Plane,
+    plane::{Plane, Tiled},
 };
 use crate::{
     aa::{
@@ -58,6 +58,8 @@ pub(super) struct Pixel {
     pub(super) is_thin: bool,
     /// Samples of the sequence that it gets whatever its error.
     pub(super) least: Least,
+    /// What more rays are worth to it.
+    pub(super) worth: Worth,
     pub(super) refined: Option<Box<Refined>>,
 }
 
@@ -80,7 +82,6 @@ pub(super) struct Chosen {
     pub(super) x: i64,
     pub(super) y: i64,
     pub(super) pixel: Pixel,
-    pub(super) worth: Worth,
     pub(super) has_changed: bool,
 }
 
@@ -113,7 +114,7 @@ pub(super) struct Round<'a> {
     pub(super) width: u32,
     pub(super) stages: &'a [Stage],
     pub(super) centers: &'a Plane<Sample>,
-    pub(super) corners: &'a Plane<Sample>,
+    pub(super) corners: &'a Tiled<Sample>,
     pub(super) threshold: Threshold,
     pub(super) stop: &'a (dyn Fn() -> bool + Sync),
 }
@@ -130,8 +131,8 @@ impl Round<'_> {
             let corner = |(x, y): (i64, i64)| {
                 if !one.pixel.suspect || is_disputed(self.centers, x, y) {
                     // Without rays it was to be traced, but time was up.
-                    let sample = self.corners.at(x, y);
-                    return (sample.rays > 0).then_some((sample.color, sample.signature));
+                    let sample = self.corners.get(x, y).filter(|sample| sample.rays > 0)?;
+                    return Some((sample.color, sample.signature));
                 }
                 let around = [(x, y), (x - 1, y), (x, y - 1), (x - 1, y - 1)];
                 let sum: Rgb = around.iter().map(|&(x, y)| self.centers.at(x, y).color).sum();
@@ -147,8 +148,8 @@ impl Round<'_> {
     }
 
     /// Whether a pixel with corners wants the samples of its next stage.
-    pub(super) fn wants(&self, Chosen { pixel, worth, .. }: &Chosen) -> bool {
-        pixel.refined.is_some() && worth.exceeds(self.threshold)
+    pub(super) fn wants(&self, Chosen { pixel, .. }: &Chosen) -> bool {
+        pixel.refined.is_some() && pixel.worth.exceeds(self.threshold)
     }
 
     /// Takes over what is known of a pixel after a stage.
@@ -162,7 +163,8 @@ impl Round<'_> {
         }
         (pixel.error, pixel.refined) = (error, Some(refined));
         pixel.stage += 1;
-        one.worth = Worth::of(pixel, expected, self.stages, self.centers.at(one.x, one.y));
+        let center = self.centers.at(one.x, one.y);
+        pixel.worth = Worth::of(pixel, expected, self.stages, center);
         one.has_changed = true;
     }
 

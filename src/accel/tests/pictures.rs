@@ -41,9 +41,9 @@ fn counts(ran: &Ran) -> [u64; Isa::ALL.len()] {
 }
 
 /// Everything a picture has, bit for bit.
-fn bits(rendering: &Rendering) -> (Vec<[u32; 3]>, Vec<u32>) {
+fn bits(rendering: &Rendering) -> (Vec<[u32; 3]>, Option<u64>) {
     let pixels = rendering.film.pixels().iter().map(|p| p.to_array().map(f32::to_bits));
-    (pixels.collect(), rendering.errors.iter().map(|e| e.to_bits()).collect())
+    (pixels.collect(), rendering.estimated_rmse.map(f64::to_bits))
 }
 
 /// Oracle: the portable arithmetic. Without the adaptive mode every pixel has one ray; with it, what is refined follows
