@@ -173,16 +173,17 @@ impl HitLanes {
     }
 }
 
-/// What the lights need to know of hits side by side.
+/// The surfaces that rays side by side hit, as far as rays that go on from there depend on them.
 #[derive(Clone, Debug)]
 pub struct SurfaceLanes {
     /// As in [`Surface`].
     pub point: Vectors,
     /// As in [`Surface`].
     pub local: Vectors,
-    /// The unit normal that light is bent by, on the side that the ray came from.
+    /// As [`Surface::shading`], but on the side that the ray came from.
     pub facing: Vectors,
-    /// Where rays to the lights start: beside the point, on the side that the ray came from.
+    /// Where shadow rays start: beside the point, on the side that the ray came from; over a smooth face, on the curved
+    /// surface that its normals describe.
     pub start: Vectors,
     /// 1 if the ray came from the outside, -1 if from the inside.
     pub side: Column,
@@ -210,7 +211,7 @@ impl SurfaceLanes {
         self.side[k] < 0.0
     }
 
-    /// The outward normal that light is bent by.
+    /// As [`Surface::shading`].
     #[inline(always)]
     pub(super) fn shading(&self, k: usize) -> DVec3 {
         self.facing.get(k) * self.side[k]
