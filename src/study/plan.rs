@@ -35,7 +35,9 @@ pub struct Plan {
 }
 
 fn plain(texts: &[&str]) -> Vec<Mode> {
-    texts.iter().filter_map(|text| text.parse::<AntiAliasing>().ok()).map(Mode::Plain).collect()
+    let mode =
+        |text: &&str| text.parse::<AntiAliasing>().expect("the plans name modes that there are");
+    texts.iter().map(mode).map(Mode::Plain).collect()
 }
 
 impl Plan {
