@@ -183,9 +183,6 @@ fn scene_file(path: &Path, warnings: &mut Vec<Warning>) -> Result<(Parts, Names)
 /// The largest scene file that is read, in bytes.
 const LARGEST_SCENE: u64 = 1 << 28;
 
-/// The largest picture file that is read, in bytes.
-const LARGEST_PICTURE: u64 = 1 << 30;
-
 fn picture(base: &Path, name: &str) -> Result<Image, SceneError> {
     if name.starts_with(builtin::PREFIX) {
         return builtin::picture(name);
@@ -193,7 +190,7 @@ fn picture(base: &Path, name: &str) -> Result<Image, SceneError> {
     let Some(file) = files::find(base, name) else {
         return Err(no_file("texture", name, base));
     };
-    let bytes = text::read_limited(&file, LARGEST_PICTURE)
+    let bytes = text::read_limited(&file, files::LARGEST_PICTURE)
         .map_err(|source| SceneError::Text { path: file.display().to_string(), source })?;
     Ok(Image::decode(name, &bytes)?)
 }

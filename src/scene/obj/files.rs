@@ -7,6 +7,9 @@ use std::{
 
 use crate::scene::text::name_of;
 
+/// The largest picture file that is read, in bytes.
+pub(crate) const LARGEST_PICTURE: u64 = 1 << 30;
+
 /// The file that `name` means in a file of the folder `base`: the path as it is, then with its letters in any case,
 /// then its last part alone beside the file.
 pub(crate) fn find(base: &Path, name: &str) -> Option<PathBuf> {

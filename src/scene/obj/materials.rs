@@ -31,9 +31,6 @@ use crate::{
     texture::{Image, Texture, UvMap},
 };
 
-/// The largest picture file that is read, in bytes.
-const LARGEST_PICTURE: u64 = 1 << 30;
-
 /// The largest material library that is read, in bytes.
 const LARGEST_LIBRARY: u64 = 1 << 28;
 
@@ -196,7 +193,7 @@ fn read_picture(base: &Path, name: &str) -> Result<Image, String> {
     let Some(file) = files::find(base, name) else {
         return Err(format!("texture `{name}` is missing"));
     };
-    let bytes = text::read_limited(&file, LARGEST_PICTURE)
+    let bytes = text::read_limited(&file, files::LARGEST_PICTURE)
         .map_err(|error| format!("texture `{name}` {error}"))?;
     Image::decode(name, &bytes).map_err(|error| error.to_string())
 }
