@@ -85,11 +85,11 @@ pub enum SceneError {
     /// An NFF file is not a scene.
     #[error(transparent)]
     Nff(#[from] NffError),
-    /// An object uses a material that is not defined.
-    #[error("object {object} uses material `{material}`, which is not defined (known: {known})")]
+    /// An object or a model uses a material that is not defined.
+    #[error("{place} uses material `{material}`, which is not defined (known: {known})")]
     UnknownMaterial {
-        /// The object, counted from 1.
-        object: usize,
+        /// The object or model, counted from 1.
+        place: String,
         /// The material.
         material: String,
         /// The materials that are defined.

@@ -92,7 +92,7 @@ impl Parts {
             .iter()
             .enumerate()
             .filter_map(|(k, model)| {
-                let made = self::model(model, &materials, models);
+                let made = self::model(model, k + 1, &materials, models);
                 note(&mut found, || Place::Model(k), made)
             })
             .collect();
@@ -119,7 +119,7 @@ fn objects(desc: &SceneDesc, materials: &Materials, found: &mut Found) -> (Vec<S
     for (k, object) in desc.object.iter().enumerate() {
         let index = k + 1;
         let mut make = || {
-            let number = materials.number(&object.material, index)?;
+            let number = materials.number(&object.material, || format!("object {index}"))?;
             let (kind, made) = make_shapes(&object.shape);
             let made = made.map_err(|source| SceneError::Shape { object: index, kind, source })?;
             let needs_uv = materials.list[number as usize].texture.needs_uv();
@@ -139,10 +139,13 @@ fn objects(desc: &SceneDesc, materials: &Materials, found: &mut Found) -> (Vec<S
 
 fn model(
     desc: &ModelDesc,
+    index: usize,
     materials: &Materials,
     models: &mut ModelSource,
 ) -> Result<(Model, Placement, Option<u32>), SceneError> {
-    let material = desc.material.as_deref().map(|name| materials.number(name, 0)).transpose()?;
+    let place = || format!("model {index}");
+    let material =
+        desc.material.as_deref().map(|name| materials.number(name, place)).transpose()?;
     let [x, y, z] = desc.rotate.map(f64::to_radians);
     let turn = if desc.rotate == [0.0; 3] {
         DMat3::IDENTITY
@@ -167,4 +170,27 @@ fn lights(desc: &SceneDesc, found: &mut Found) -> Vec<Light> {
     };
     let lights = desc.light.iter().enumerate();
     lights.filter_map(|(k, l)| note(found, || Place::Light(k), light(l, k + 1))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::builtin;
+
+    /// A description that is not read from a text has no lines to point to.
+    #[test]
+    fn a_material_that_is_not_defined_is_said_to_be_that_of_an_object_or_a_model() {
+        const SCENE: &str = "resolution = [1, 1]\ndepth = 1\nbackground = [0, 0, 0]\n\
+            camera = { eye = [0, 0, 5], look_at = [0, 0, 0], up = [0, 1, 0], vertical_fov = 40 }\n";
+        let message = |parts: &str| {
+            let desc = toml::from_str(&format!("{SCENE}{parts}")).expect("a description");
+            Parts::try_new(&desc, &mut builtin::picture).expect_err("no such material").to_string()
+        };
+        let reason = "uses material `red`, which is not defined (known: none)";
+        let object =
+            "[[object]]\nmaterial = \"red\"\nshape.sphere = { center = [0, 0, 0], radius = 1 }";
+        assert_eq!(message(object), format!("object 1 {reason}"));
+        let model = "[[model]]\nfile = \"a.obj\"\nmaterial = \"red\"";
+        assert_eq!(message(model), format!("model 1 {reason}"));
+    }
 }

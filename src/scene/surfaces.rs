@@ -42,10 +42,14 @@ impl<'a> Materials<'a> {
         Self { list, number_of, known: names(&desc.material) }
     }
 
-    /// The place in the list of the material that the object of this number, from 1, or a model (0) names.
-    pub(super) fn number(&self, material: &str, object: usize) -> Result<u32, SceneError> {
+    /// The number in the list of the material that is named at `place`.
+    pub(super) fn number(
+        &self,
+        material: &str,
+        place: impl FnOnce() -> String,
+    ) -> Result<u32, SceneError> {
         self.number_of.get(material).copied().ok_or_else(|| SceneError::UnknownMaterial {
-            object,
+            place: place(),
             material: material.to_owned(),
             known: self.known.clone(),
         })
