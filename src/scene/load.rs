@@ -44,58 +44,11 @@ impl Parts {
         models: &mut ModelSource,
     ) -> Result<Self, Vec<(Place, SceneError)>> {
         let mut found = Vec::new();
-        for (name, value) in
-            [("resolution", desc.resolution[0].min(desc.resolution[1])), ("depth", desc.depth)]
-        {
-            let range = "at least 1";
-            note(
-                &mut found,
-                || Place::Scene(name),
-                check("scene", name, value.into(), range, value >= 1),
-            );
-        }
-        let cutoff = at_least_zero("scene", "cutoff", f64::from(desc.cutoff));
-        note(&mut found, || Place::Scene("cutoff"), cutoff);
-        let camera = CameraPlan {
-            eye: DVec3::from_array(desc.camera.eye),
-            look_at: DVec3::from_array(desc.camera.look_at),
-            up: DVec3::from_array(desc.camera.up),
-            vertical_fov: desc.camera.vertical_fov,
-        };
-        let seeing = camera.camera().map_err(SceneError::from);
-        note(&mut found, || Place::Scene("camera"), seeing);
-        let background = color("scene", "background", desc.background, desc.color_space);
-        let background = note(&mut found, || Place::Scene("background"), background);
-        let aa = desc.aa.as_ref().map(|mode| {
-            mode.parse::<AntiAliasing>()
-                .map_err(|reason| SceneError::Aa { mode: mode.clone(), reason: reason.to_string() })
-        });
-        let aa = aa.and_then(|aa| note(&mut found, || Place::Scene("aa"), aa));
-        let lights = lights(desc, &mut found);
+        let mut parts = empty_parts(desc, &mut found);
+        parts.lights = lights(desc, &mut found);
         let materials = Materials::new(desc, images, &mut found);
-        let (shapes, material_of) = objects(desc, &materials, &mut found);
-        let mut parts = Self {
-            resolution: desc.resolution,
-            depth: desc.depth,
-            cutoff: desc.cutoff,
-            aa,
-            camera,
-            shapes,
-            material_of,
-            meshes: Vec::new(),
-            materials: Vec::new(),
-            lights,
-            background: background.unwrap_or_default(),
-        };
-        let placed: Vec<_> = desc
-            .model
-            .iter()
-            .enumerate()
-            .filter_map(|(k, model)| {
-                let made = self::model(model, k + 1, &materials, models);
-                note(&mut found, || Place::Model(k), made)
-            })
-            .collect();
+        (parts.shapes, parts.material_of) = objects(desc, &materials, &mut found);
+        let placed = placed_models(desc, &materials, models, &mut found);
         if !found.is_empty() {
             return Err(found);
         }
@@ -111,6 +64,46 @@ impl Parts {
             }
         }
         Ok(parts)
+    }
+}
+
+/// What the scene's own keys say: how it is seen, but nothing to be seen yet.
+fn empty_parts(desc: &SceneDesc, found: &mut Found) -> Parts {
+    for (name, value) in
+        [("resolution", desc.resolution[0].min(desc.resolution[1])), ("depth", desc.depth)]
+    {
+        let is_in = check("scene", name, value.into(), "at least 1", value >= 1);
+        note(found, || Place::Scene(name), is_in);
+    }
+    let cutoff = at_least_zero("scene", "cutoff", f64::from(desc.cutoff));
+    note(found, || Place::Scene("cutoff"), cutoff);
+    let camera = CameraPlan {
+        eye: DVec3::from_array(desc.camera.eye),
+        look_at: DVec3::from_array(desc.camera.look_at),
+        up: DVec3::from_array(desc.camera.up),
+        vertical_fov: desc.camera.vertical_fov,
+    };
+    let seeing = camera.camera().map_err(SceneError::from);
+    note(found, || Place::Scene("camera"), seeing);
+    let background = color("scene", "background", desc.background, desc.color_space);
+    let background = note(found, || Place::Scene("background"), background);
+    let aa = desc.aa.as_ref().map(|mode| {
+        mode.parse::<AntiAliasing>()
+            .map_err(|reason| SceneError::Aa { mode: mode.clone(), reason: reason.to_string() })
+    });
+    let aa = aa.and_then(|aa| note(found, || Place::Scene("aa"), aa));
+    Parts {
+        resolution: desc.resolution,
+        depth: desc.depth,
+        cutoff: desc.cutoff,
+        aa,
+        camera,
+        background: background.unwrap_or_default(),
+        shapes: Vec::new(),
+        material_of: Vec::new(),
+        meshes: Vec::new(),
+        materials: Vec::new(),
+        lights: Vec::new(),
     }
 }
 
@@ -137,12 +130,29 @@ fn objects(desc: &SceneDesc, materials: &Materials, found: &mut Found) -> (Vec<S
     (shapes, material_of)
 }
 
-fn model(
+/// A model, where it goes, and the material that it wears in place of its own.
+type Placed = (Model, Placement, Option<u32>);
+
+fn placed_models(
+    desc: &SceneDesc,
+    materials: &Materials,
+    models: &mut ModelSource,
+    found: &mut Found,
+) -> Vec<Placed> {
+    let mut placed = Vec::new();
+    for (k, model) in desc.model.iter().enumerate() {
+        let made = placed_model(model, k + 1, materials, models);
+        placed.extend(note(found, || Place::Model(k), made));
+    }
+    placed
+}
+
+fn placed_model(
     desc: &ModelDesc,
     index: usize,
     materials: &Materials,
     models: &mut ModelSource,
-) -> Result<(Model, Placement, Option<u32>), SceneError> {
+) -> Result<Placed, SceneError> {
     let place = || format!("model {index}");
     let material =
         desc.material.as_deref().map(|name| materials.number(name, place)).transpose()?;
