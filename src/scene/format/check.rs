@@ -14,7 +14,7 @@ use super::{
     lines::{Found, readable},
     nearest,
     sound::Sound,
-    values::{is_in, listed, number, range_text, shown, unknown, vector, whole},
+    values::{listed, shown, unknown, unmet},
 };
 
 pub(super) type Value<'a> = Spanned<DeValue<'a>>;
@@ -143,17 +143,15 @@ impl Walk<'_, '_> {
             found.push((span.clone(), format!("`{name}` is {what}, but must be {expected}")));
         };
         match kind {
-            Kind::Number(range) => match number(value.get_ref()) {
-                Some(x) if is_in(x, range) => {}
-                _ => wrong(range_text(range)),
-            },
-            Kind::Whole(least) => match whole(value.get_ref()) {
-                Some(x) if x >= least => {}
-                _ => wrong(&format!("a whole number from {least} to {}", u32::MAX)),
-            },
-            Kind::Text => {
-                if value.get_ref().as_str().is_none_or(str::is_empty) {
-                    wrong("text");
+            Kind::Number(_)
+            | Kind::Whole(_)
+            | Kind::Text
+            | Kind::Color
+            | Kind::Vector
+            | Kind::Size
+            | Kind::Choice(_) => {
+                if let Some(expected) = unmet(value.get_ref(), kind) {
+                    wrong(&expected);
                 }
             }
             Kind::File => match value.get_ref().as_str() {
@@ -164,35 +162,7 @@ impl Walk<'_, '_> {
                 }
                 _ => wrong("the name of a file"),
             },
-            Kind::Color => {
-                if vector(value, |x| (0.0..=1.0).contains(&x)).is_none() {
-                    wrong("three channels from 0 to 1, such as [1, 0.5, 0]");
-                }
-            }
-            Kind::Vector => {
-                if vector(value, f64::is_finite).is_none() {
-                    wrong("three finite numbers, such as [1, 2.5, -3]");
-                }
-            }
-            Kind::Size => {
-                let sides =
-                    value.get_ref().as_array().map(|a| a.iter().map(|v| whole(v.get_ref())));
-                let is_size = sides.is_some_and(|mut sides| {
-                    sides.len() == 2 && sides.all(|side| side.is_some_and(|n| n >= 1))
-                });
-                if !is_size {
-                    wrong("two positive whole numbers, such as [640, 480]");
-                }
-            }
             Kind::Vectors { least, most } => self.vectors(value, least, most, name, found),
-            Kind::Choice(choices) => {
-                let text = value.get_ref().as_str();
-                if !text.is_some_and(|text| choices.contains(&text)) {
-                    let hint = text.and_then(|t| nearest(t, choices.iter().copied()));
-                    let hint = hint.map_or(String::new(), |h| format!("; did you mean `{h}`?"));
-                    wrong(&format!("one of {}{hint}", listed(choices.iter().copied())));
-                }
-            }
             Kind::Name(table) => match value.get_ref().as_str() {
                 Some(text) => self.name(text, table, name, value.span(), found),
                 None => wrong(&format!("the name of a {table}")),
