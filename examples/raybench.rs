@@ -15,7 +15,7 @@ use stress::{Geometry, SIDE};
 use whitted::{
     accel::Accel,
     geometry::{
-        Hit, Ray,
+        Ray,
         lanes::{HitLanes, RayLanes, Vectors},
     },
 };
@@ -23,67 +23,88 @@ use whitted::{
 fn main() {
     let mut arguments = std::env::args().skip(1);
     let what = arguments.next().expect("spheres:N, icos:N:LEVEL or obj:FILE");
-    let repeats: usize =
-        arguments.next().map_or(5, |text| text.parse().expect("a number of repeats"));
-    let make = || geometry(&what);
-    let print = |measure: &str, value: f64, unit: &str, hits: usize, sum: f64| {
+    let repeats = arguments.next().map_or(5, |text| text.parse().expect("a number of repeats"));
+    let bench = Bench { what, repeats };
+    bench.builds();
+    bench.queries();
+}
+
+/// What is measured, and how often.
+struct Bench {
+    what: String,
+    repeats: usize,
+}
+
+impl Bench {
+    fn print(&self, measure: &str, value: f64, unit: &str, hits: usize, sum: f64) {
+        let what = &self.what;
         println!("whitted,{what},robust,{measure},{value:.6},{unit},{hits},{sum:.9},0");
-    };
-    for threads in [2, 1] {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        let build = || {
-            let Geometry { shapes, .. } = make();
-            let work = || Accel::build(shapes);
-            pool.install(|| if threads == 1 { timed(work).0 } else { timed_by_the_wall(work).0 })
-        };
-        let best = (0..repeats.min(3)).map(|_| build()).fold(f64::INFINITY, f64::min);
-        let plural = if threads == 1 { "" } else { "s" };
-        print(
-            &format!("build_{threads}thread{plural}"),
-            best * 1e3,
-            "ms",
-            make().shapes.len(),
-            0.0,
-        );
     }
 
-    let Geometry { shapes, bounds } = make();
-    let accel = Accel::build(shapes);
-    let best = |rays: usize, query: &dyn Fn() -> (usize, f64), measure: &str| {
-        let runs: Vec<_> = (0..repeats).map(|_| timed(query)).collect();
+    /// Builds of the tree, by two threads and by one.
+    fn builds(&self) {
+        for threads in [2, 1] {
+            let pool =
+                rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            let build = || {
+                let Geometry { shapes, .. } = geometry(&self.what);
+                let work = || Accel::build(shapes);
+                pool.install(
+                    || if threads == 1 { timed(work).0 } else { timed_by_the_wall(work).0 },
+                )
+            };
+            let best = (0..self.repeats.min(3)).map(|_| build()).fold(f64::INFINITY, f64::min);
+            let measure = format!("build_{threads}thread{}", if threads == 1 { "" } else { "s" });
+            self.print(&measure, best * 1e3, "ms", geometry(&self.what).shapes.len(), 0.0);
+        }
+    }
+
+    /// Queries of rays from a camera, one by one and together, from what they hit to a light, and of random ones.
+    fn queries(&self) {
+        let Geometry { shapes, bounds } = geometry(&self.what);
+        let accel = Accel::build(shapes);
+        let camera = stress::camera();
+        let single = in_single_precision(&camera);
+        self.rate(camera.len(), &|| nearest(&accel, &single), "camera_intersect1");
+        let tiles = in_tiles(&camera);
+        self.rate(camera.len(), &|| nearest_in_tiles(&accel, &tiles), "camera_coherent");
+        let shadow = stress::shadow(&accel);
+        self.rate(shadow.len(), &|| (blocked(&accel, &shadow), 0.0), "shadow_occluded1");
+        let random = in_single_precision(&stress::random(&bounds, 1_000_000));
+        self.rate(random.len(), &|| nearest(&accel, &random), "random_intersect1");
+    }
+
+    /// The best rate of a query of so many rays, which gives the hits and the sum of their distances.
+    fn rate(&self, rays: usize, query: &dyn Fn() -> (usize, f64), measure: &str) {
+        let runs: Vec<_> = (0..self.repeats).map(|_| timed(query)).collect();
         let seconds = runs.iter().map(|run| run.0).fold(f64::INFINITY, f64::min);
         let (hits, sum) = runs[0].1;
-        print(measure, rays as f64 / seconds * 1e-6, "Mrays/s", hits, sum);
+        self.print(measure, rays as f64 / seconds * 1e-6, "Mrays/s", hits, sum);
         #[cfg(feature = "leaf-study")]
         print_counts(measure, rays, query);
-    };
-    let count = |hits: &mut dyn Iterator<Item = Option<Hit>>| {
-        hits.flatten().fold((0, 0.0), |(count, sum), hit| (count + 1, sum + hit.t))
-    };
-    let nearest = |rays: &[[Vec3; 2]]| {
-        let rays = rays.iter().map(|[origin, dir]| Ray::new(origin.as_dvec3(), dir.as_dvec3()));
-        count(&mut rays.map(|ray| accel.nearest(&ray, f64::INFINITY)))
-    };
+    }
+}
 
-    let camera = stress::camera();
-    let single = in_single_precision(&camera);
-    best(camera.len(), &|| nearest(&single), "camera_intersect1");
-    let tiles = in_tiles(&camera);
-    let packets = || {
-        let mut hits = HitLanes::NONE;
-        tiles.iter().fold((0, 0.0), |(all, sum), [origin, dir]| {
-            let rays = RayLanes { origin, dir, from: None, used: u64::MAX };
-            accel.nearest_packet(&rays, &mut hits);
-            let found = hits.t.iter().filter(|t| t.is_finite());
-            found.fold((all, sum), |(all, sum), t| (all + 1, sum + t))
-        })
-    };
-    best(camera.len(), &packets, "camera_coherent");
-    let shadow = stress::shadow(&accel);
-    let blocked = |ray: &&Ray| accel.is_blocked(ray, 1.0, |_| true, |_, _| ControlFlow::Break(()));
-    best(shadow.len(), &|| (shadow.iter().filter(blocked).count(), 0.0), "shadow_occluded1");
-    let random = in_single_precision(&stress::random(&bounds, 1_000_000));
-    best(random.len(), &|| nearest(&random), "random_intersect1");
+fn nearest(accel: &Accel, rays: &[[Vec3; 2]]) -> (usize, f64) {
+    let rays = rays.iter().map(|[origin, dir]| Ray::new(origin.as_dvec3(), dir.as_dvec3()));
+    let hits = rays.filter_map(|ray| accel.nearest(&ray, f64::INFINITY));
+    hits.fold((0, 0.0), |(count, sum), hit| (count + 1, sum + hit.t))
+}
+
+fn nearest_in_tiles(accel: &Accel, tiles: &[[Vectors; 2]]) -> (usize, f64) {
+    let mut hits = HitLanes::NONE;
+    tiles.iter().fold((0, 0.0), |(all, sum), [origin, dir]| {
+        let rays = RayLanes { origin, dir, from: None, used: u64::MAX };
+        accel.nearest_packet(&rays, &mut hits);
+        let found = hits.t.iter().filter(|t| t.is_finite());
+        found.fold((all, sum), |(all, sum), t| (all + 1, sum + t))
+    })
+}
+
+fn blocked(accel: &Accel, rays: &[Ray]) -> usize {
+    let is_blocked =
+        |ray: &&Ray| accel.is_blocked(ray, 1.0, |_| true, |_, _| ControlFlow::Break(()));
+    rays.iter().filter(is_blocked).count()
 }
 
 /// The tests that a ray takes.
