@@ -7,10 +7,10 @@
 use std::{error::Error, path::Path};
 
 use whitted::{
-    Rgb,
-    aa::{AntiAliasing, levels::levels},
+    aa::AntiAliasing,
     render::{Goal, RenderOptions, Rendering, render},
     scene::{LoadOptions, Scene, load},
+    study::reference::Reference,
 };
 
 const MODES: [(&str, Option<f64>); 13] = [
@@ -39,11 +39,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     for name in scenes {
         let scene = scene(&name)?;
         let truth = picture(&scene, AntiAliasing::Sequence { count: 1024 }, Goal::Mode)?;
+        let truth = Reference::of_film(&truth.film);
         print!("{:24}", Path::new(&name).file_name().unwrap_or_default().to_string_lossy());
         for (mode, goal) in MODES {
             let goal_of_picture = goal.map_or(Goal::Mode, Goal::Error);
             let found = picture(&scene, mode.parse()?, goal_of_picture)?;
-            let error = distance(&found, &truth);
+            let (error, _) = truth.error_of(&found.film);
             let ratio = found.estimated_rmse.ok_or("no estimate")? / error;
             print!(" {error:6.2} x{ratio:.2}");
             if error >= LEAST {
@@ -96,11 +97,4 @@ fn scene(name: &str) -> Result<Scene, Box<dyn Error>> {
 fn picture(scene: &Scene, aa: AntiAliasing, goal: Goal) -> Result<Rendering, Box<dyn Error>> {
     let options = RenderOptions { size: Some([128, 80]), aa, goal, ..Default::default() };
     Ok(render(scene, &options, &|_| ())?)
-}
-
-/// The root mean square difference in levels.
-fn distance(a: &Rendering, b: &Rendering) -> f64 {
-    let square = |(a, b): (&Rgb, &Rgb)| f64::from((levels(*a) - levels(*b)).length_squared()) / 3.0;
-    let (a, b) = (a.film.pixels(), b.film.pixels());
-    (a.iter().zip(b).map(square).sum::<f64>() / a.len() as f64).sqrt()
 }

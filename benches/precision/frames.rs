@@ -2,9 +2,11 @@
 
 use std::{num::NonZeroUsize, sync::Mutex};
 
+use image::RgbImage;
 use whitted::{
     aa::AntiAliasing,
     accel::study::{Counts, Leaves, set_leaves, take_counts},
+    film::{Difference, encode},
     render::{Progress, RenderOptions, Rendering, render},
     scene::{Scene, load_builtin, load_builtin_of},
 };
@@ -93,14 +95,11 @@ fn study(name: String, scene: &Scene) -> Frame {
 }
 
 fn difference(a: &Rendering, b: &Rendering) -> f64 {
-    let bytes = |r: &Rendering| {
-        let mut png = vec![];
-        whitted::film::write_png(&r.film, None, &mut png).expect("memory");
-        image::load_from_memory(&png).expect("a picture").to_rgb8().into_raw()
+    let picture = |r: &Rendering| {
+        let bytes = encode::to_srgb8(&r.film);
+        RgbImage::from_raw(r.film.width(), r.film.height(), bytes).expect("three bytes a pixel")
     };
-    let (a, b) = (bytes(a), bytes(b));
-    let square = |(a, b): (&u8, &u8)| (f64::from(*a) - f64::from(*b)).powi(2);
-    (a.iter().zip(&b).map(square).sum::<f64>() / a.len() as f64).sqrt()
+    Difference::between(&picture(a), &picture(b)).expect("of the same size").rmse
 }
 
 /// The frames of the assignment scene and of the stress scenes.

@@ -6,7 +6,7 @@ use super::{
     Mode, Plan, Portrait, Row, Step, Study, StudyError, Trade, plan, reference::Reference,
 };
 use crate::{
-    aa::{AntiAliasing, levels::levels},
+    aa::AntiAliasing,
     accel::Preset,
     render::{Rendering, render},
     scene::{Scene, SceneError},
@@ -127,12 +127,7 @@ impl Run<'_> {
         let mode = Mode::Plain(AntiAliasing::default());
         let options = mode.options(setting.size, setting.scene.depth(), self.plan.threads);
         let film = render(setting.scene, &options, &|_| ())?.film;
-        let errors = film
-            .pixels()
-            .iter()
-            .zip(reference.pixels())
-            .map(|(a, b)| ((levels(*a) - levels(*b)).length_squared() / 3.0).sqrt())
-            .collect();
+        let errors = reference.errors_of_pixels(&film);
         self.study.portraits.push(Portrait { scene: setting.name.to_owned(), film, errors });
         Ok(())
     }

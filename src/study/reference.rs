@@ -6,6 +6,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use glam::Vec3;
+
 use super::{StudyError, report::file_name};
 use crate::{
     Rgb,
@@ -40,14 +42,20 @@ impl Reference {
         }
         let aa = AntiAliasing::Sequence { count: rays };
         let options = RenderOptions { size: Some(size), aa, threads, ..RenderOptions::default() };
-        let pixels = render(scene, &options, &|_| ())?.film.pixels().to_vec();
+        let reference = Self::of_film(&render(scene, &options, &|_| ())?.film);
         WholeFile::prepare(path)?.commit(|writer| {
-            pixels
+            reference
+                .pixels
                 .iter()
                 .flat_map(Rgb::to_array)
                 .try_for_each(|c| writer.write_all(&c.to_le_bytes()))
         })?;
-        Ok(Self { pixels })
+        Ok(reference)
+    }
+
+    /// A film that has converged.
+    pub fn of_film(film: &Film) -> Self {
+        Self { pixels: film.pixels().to_vec() }
     }
 
     /// The file: its name tells scene, size, depth, rays and the program's version apart, whatever the scene is called.
@@ -74,19 +82,22 @@ impl Reference {
         (bytes.len() as u64 == 12 * count).then_some(Self { pixels })
     }
 
-    /// The colours, row by row, linear.
-    pub fn pixels(&self) -> &[Rgb] {
-        &self.pixels
-    }
-
     /// The root mean square difference of all channels of a film, and the largest, in levels of 255 before rounding.
     pub fn error_of(&self, film: &Film) -> (f64, f64) {
         let (mut sum, mut worst) = (0.0, 0.0_f32);
-        for (a, b) in film.pixels().iter().zip(&self.pixels) {
-            let difference = levels(*a) - levels(*b);
+        for difference in self.differences(film) {
             sum += f64::from(difference.length_squared()) / 3.0;
             worst = worst.max(difference.abs().max_element());
         }
         ((sum / self.pixels.len().max(1) as f64).sqrt(), f64::from(worst))
+    }
+
+    /// The root mean square difference of each pixel's channels, row by row.
+    pub fn errors_of_pixels(&self, film: &Film) -> Vec<f32> {
+        self.differences(film).map(|d| (d.length_squared() / 3.0).sqrt()).collect()
+    }
+
+    fn differences(&self, film: &Film) -> impl Iterator<Item = Vec3> {
+        film.pixels().iter().zip(&self.pixels).map(|(a, b)| levels(*a) - levels(*b))
     }
 }
