@@ -1,19 +1,15 @@
 //! From the entities of an NFF file to the parts of a scene.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
-use super::{NffCounts, NffError, NffScene, read::Reader};
+use super::{NffCounts, NffError, NffScene, read::Reader, soup::Soup};
 use crate::{
     color::{Rgb, from_srgb, srgb_to_linear},
-    geometry::{
-        Cone, Cylinder, Ends, Inward, Mesh, Polygon, Shape, Sphere,
-        mesh::{Attributes, has_area},
-        triangulate::Triangulator,
-    },
+    geometry::{Cone, Cylinder, Ends, Inward, Polygon, Shape, Sphere, triangulate::Triangulator},
     light::Light,
     material::Material,
     scene::{
-        parts::{CameraPlan, MeshPart, Parts},
+        parts::{CameraPlan, Parts},
         warning::Warning,
     },
     texture::Texture,
@@ -53,15 +49,6 @@ pub(super) struct Builder {
     /// How many shapes without size, and where the first is.
     dropped: Option<(u32, u32)>,
     triangulator: Triangulator,
-}
-
-/// Triangles on their way to a mesh.
-#[derive(Debug, Default)]
-struct Soup {
-    vertices: Vec<DVec3>,
-    normals: Vec<Vec3>,
-    triangles: Vec<[u32; 3]>,
-    material_of: Vec<u32>,
 }
 
 impl Builder {
@@ -227,24 +214,9 @@ impl Builder {
         }
         let material = self.material();
         let soup = if is_patch { &mut self.smooth } else { &mut self.flat };
-        let start = soup.vertices.len() as u32;
-        let before = soup.triangles.len();
-        for triangle in self.triangulator.cut(&corners) {
-            if has_area(&triangle.map(|k| corners[k as usize])) {
-                soup.triangles.push(triangle.map(|k| start + k));
-                soup.material_of.push(material);
-            }
-        }
-        if soup.triangles.len() == before {
+        if !soup.add(corners, &normals, material, &mut self.triangulator) {
             self.drop_at(line);
-            return Ok(());
         }
-        soup.vertices.append(&mut corners);
-        let unit = |n: &DVec3| {
-            let n = crate::math::scale::normalized(*n).0.normalize_or_zero();
-            n.as_vec3()
-        };
-        soup.normals.extend(normals.iter().map(unit));
         Ok(())
     }
 
@@ -257,7 +229,7 @@ impl Builder {
         };
         let meshes = [std::mem::take(&mut self.flat), std::mem::take(&mut self.smooth)]
             .into_iter()
-            .filter(|soup| !soup.triangles.is_empty())
+            .filter(|soup| !soup.is_empty())
             .map(Soup::mesh)
             .collect::<Result<Vec<_>, _>>()
             .map_err(|error| missing(&error.to_string()))?;
@@ -300,14 +272,6 @@ impl Builder {
                 materials: self.materials,
             },
         })
-    }
-}
-
-impl Soup {
-    fn mesh(self) -> Result<MeshPart, crate::geometry::MeshError> {
-        let attributes = Attributes { normals: self.normals, ..Attributes::default() };
-        let mesh = Mesh::try_new(self.vertices, self.triangles, attributes)?;
-        Ok(MeshPart { mesh, material_of: self.material_of })
     }
 }
 

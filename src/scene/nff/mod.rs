@@ -4,6 +4,7 @@
 
 mod build;
 mod read;
+mod soup;
 
 use std::path::Path;
 
