@@ -4,17 +4,8 @@
 //! side is x² + z² = (R/h)² y², −h ≤ y ≤ 0. The equation has a second nappe, above the apex, which
 //! is no part of the cone.
 //!
-//! **Intersection.** Scaled by (h, R, h), the cone is the unit cone X² + Z² = Y². With F = (h fₓ, R f_y, h f_z) and
-//! E = (h dₓ, R d_y, h d_z), the ray F + t E meets it where
-//!
-//! (Eₓ² − E_y² + E_z²) t² + 2 (FₓEₓ − F_yE_y + F_zE_z) t + (Fₓ² − F_y² + F_z²) = 0.
-//!
-//! Roots with −R h ≤ Y ≤ 0 count. Three cancellations lurk here. The discriminant b² − ac is
-//! |(F×E)ₓ|² + |(F×E)_z|² − |(F×E)_y|², a difference of squares: it is taken as (m − |w|)(m + |w|).
-//! The coefficients vanish near the cone: they are summed with compensation. And near the apex, Y = F_y + t E_y
-//! loses everything: with p₁ = FₓE_y − F_yEₓ, p₂ = F_zE_y − F_yE_z and N = Eₓp₁ + E_zp₂, the
-//! heights of the two roots are (−N ∓ E_y √D)/a and their product is (p₁² + p₂²)/a, so the one is a sum of
-//! like signs and the other a quotient.
+//! **Intersection.** Scaled by (h, R, h), the cone is part of the unit cone X² + Z² = Y² (`unit_cone`). Of the points
+//! where the ray meets that, those with −R h ≤ Y ≤ 0 count.
 //!
 //! **Normal.** Put a point of the side at the angle a about the axis and let t be the angle by which the normal rises
 //! above the horizontal. The generator falls by h over R, so tan t = R/h, and the gradient of
@@ -33,8 +24,9 @@ use super::{
     ray::{Departure, Ray},
     shape_error::ShapeError,
     solid::{Interval, leaving},
+    unit_cone::{self, Root, SideRoots, flip},
 };
-use crate::math::{Frame, Roots, compensated::hypot, difference_of_products, dot, scale};
+use crate::math::{Frame, compensated::hypot, dot, scale};
 
 /// The faces of a cone.
 const SIDE: u8 = 0;
@@ -51,22 +43,6 @@ pub struct Cone {
     /// How far below the apex the cone begins: 0, unless it is truncated.
     cut: f64,
     ends: Ends,
-}
-
-/// A crossing of the infinite double cone: its parameter and its height above the apex, in the unit cone's units.
-#[derive(Clone, Copy)]
-struct Root {
-    t: f64,
-    y: f64,
-}
-
-/// What a line and the infinite double cone have in common.
-#[derive(Clone, Copy)]
-struct SideRoots {
-    /// The leading coefficient: positive if the line crosses one nappe twice (or none), negative if it crosses both.
-    a: f64,
-    near: Root,
-    far: Root,
 }
 
 impl Cone {
@@ -163,36 +139,7 @@ impl Cone {
 
     #[inline(always)]
     fn side_roots(&self, f: DVec3, d: DVec3) -> Option<SideRoots> {
-        let (f, e) = (self.scaled_to_unit(f), self.scaled_to_unit(d));
-        let p1 = difference_of_products(f.x, e.y, f.y, e.x);
-        let p2 = difference_of_products(f.z, e.y, f.y, e.z);
-        let w = difference_of_products(f.x, e.z, f.z, e.x).abs();
-        let m = hypot(p1, p2);
-        let a = dot(flip(e), e);
-        // A line within the cone's slope (a < 0) always meets it; only rounding can say otherwise.
-        let gap = if a < 0.0 { (m - w).max(0.0) } else { m - w };
-        if !(gap >= 0.0) {
-            return None; // NaN is a miss
-        }
-        let (b, c) = (dot(flip(f), e), dot(flip(f), f));
-        let root = (gap * (m + w)).sqrt();
-        let roots = Roots::new(a, b, c, root);
-        let n = difference_of_products(e.x, p1, -e.z, p2);
-        let s = e.y * root.copysign(b);
-        let (stable, other) = (-n - s, s - n); // a times the heights of the two roots
-        let product = p1.mul_add(p1, p2 * p2); // a times the product of the heights
-        let apex = |y: f64| if y.is_nan() { 0.0 } else { y }; // 0/0: the line through the apex
-        let (y_stable, y_other) = if stable.abs() >= other.abs() {
-            (stable / a, apex(product / stable))
-        } else {
-            (apex(product / other), other / a)
-        };
-        let (u, v) = (Root { t: roots.stable, y: y_stable }, Root { t: roots.other, y: y_other });
-        Some(if u.t <= v.t {
-            SideRoots { a, near: u, far: v }
-        } else {
-            SideRoots { a, near: v, far: u }
-        })
+        unit_cone::crossed(self.scaled_to_unit(f), self.scaled_to_unit(d))
     }
 
     #[inline(always)]
@@ -214,34 +161,7 @@ impl Cone {
     #[inline(always)]
     fn inside(&self, f: DVec3, d: DVec3, above_base: f64) -> Option<Interval> {
         let roots = self.side_roots(f, d)?;
-        Self::below_apex(&roots, d.y)?.above(above_base, d.y, BASE)
-    }
-
-    /// The interval of the ray inside the infinite lower nappe.
-    #[inline(always)]
-    fn below_apex(roots: &SideRoots, dy: f64) -> Option<Interval> {
-        let SideRoots { a, near, far } = *roots;
-        if a > 0.0 {
-            (near.y <= 0.0 && far.y <= 0.0).then(|| Interval::new(near.t, far.t))
-        } else {
-            // Between the roots the line is outside; it enters or leaves the lower nappe once, at the finite root
-            // there.
-            let through = if dy < 0.0 {
-                if far.t.is_finite() { far } else { near }
-            } else if near.t.is_finite() {
-                near
-            } else {
-                far
-            };
-            if a == 0.0 && through.y > 0.0 {
-                return None; // parallel to a generator, the one root on the upper nappe
-            }
-            Some(if dy < 0.0 {
-                Interval::new(through.t, f64::INFINITY)
-            } else {
-                Interval::new(f64::NEG_INFINITY, through.t)
-            })
-        }
+        roots.below_apex(d.y)?.above(above_base, d.y, BASE)
     }
 
     /// The crossings of a ray that leaves this cone.
@@ -304,10 +224,4 @@ impl Cone {
         let onto = self.radius * along / rho;
         DVec3::new(q.x * onto, -self.height * along, q.z * onto)
     }
-}
-
-/// The vector whose dot product with another is the quadratic form x² − y² + z² of the unit cone.
-#[inline(always)]
-fn flip(v: DVec3) -> DVec3 {
-    DVec3::new(v.x, -v.y, v.z)
 }

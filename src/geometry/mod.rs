@@ -28,6 +28,7 @@ pub mod sphere;
 pub mod tetrahedron;
 pub mod triangle;
 pub mod triangulate;
+mod unit_cone;
 
 pub use bounds::Bounds;
 pub use cone::Cone;
