@@ -1,17 +1,19 @@
 //! How far a render is, on standard error.
 
 mod report;
+mod terminal;
 
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, IsTerminal};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle, TermLike};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use whitted::render::Progress;
 
 use super::args::ProgressMode;
 use super::streams;
 use report::{Report, bar_text, json_line, openjd_lines, plain_line};
+use terminal::AnyStderr;
 
 const PLAIN_INTERVAL: Duration = Duration::from_secs(5);
 const JSON_INTERVAL: Duration = Duration::from_millis(100);
@@ -190,58 +192,6 @@ struct Lines {
     tells_end: bool,
     /// Whether a line comes after the pause even if there is nothing new, as on a long step of a render towards a goal.
     repeats: bool,
-}
-
-/// Standard error as indicatif draws on it, terminal or not, for whoever asks for the bar by name.
-#[derive(Debug)]
-struct AnyStderr;
-
-impl AnyStderr {
-    fn send(text: &str) -> io::Result<()> {
-        io::stderr().write_all(text.as_bytes())
-    }
-
-    fn step(letter: char, n: usize) -> io::Result<()> {
-        if n == 0 { Ok(()) } else { Self::send(&format!("\x1b[{n}{letter}")) }
-    }
-}
-
-impl TermLike for AnyStderr {
-    fn width(&self) -> u16 {
-        80
-    }
-
-    fn move_cursor_up(&self, n: usize) -> io::Result<()> {
-        Self::step('A', n)
-    }
-
-    fn move_cursor_down(&self, n: usize) -> io::Result<()> {
-        Self::step('B', n)
-    }
-
-    fn move_cursor_right(&self, n: usize) -> io::Result<()> {
-        Self::step('C', n)
-    }
-
-    fn move_cursor_left(&self, n: usize) -> io::Result<()> {
-        Self::step('D', n)
-    }
-
-    fn write_line(&self, text: &str) -> io::Result<()> {
-        Self::send(&format!("{text}\n"))
-    }
-
-    fn write_str(&self, text: &str) -> io::Result<()> {
-        Self::send(text)
-    }
-
-    fn clear_line(&self) -> io::Result<()> {
-        Self::send("\r\x1b[2K")
-    }
-
-    fn flush(&self) -> io::Result<()> {
-        io::stderr().flush()
-    }
 }
 
 #[cfg(test)]
