@@ -9,7 +9,7 @@ use whitted::film::heatmap::{Scale, write_heatmap};
 use whitted::film::write_rgb8;
 use whitted::film::{OutputFile, WholeFile};
 use whitted::scene::{self, LoadOptions, Loaded, SceneError};
-use whitted::study::{Plan, Portrait, Step, Study, charts, report};
+use whitted::study::{Plan, Portrait, Step, Study, charts, files, report};
 
 use super::args::StudyArgs;
 use super::failure::{Failure, warn};
@@ -28,7 +28,7 @@ pub(crate) fn run(args: &StudyArgs) -> Result<(), Failure> {
     let references = args.output.join("references");
     fs::create_dir_all(&references)
         .with_context(|| format!("{}: the folder cannot be created", references.display()))?;
-    for name in report::files(&plan.scenes) {
+    for name in files::files(&plan.scenes) {
         file(&args.output, &name)?;
     }
 
@@ -80,7 +80,7 @@ fn file(folder: &Path, name: &str) -> Result<WholeFile, Failure> {
     Ok(WholeFile::prepare(folder.join(name))?)
 }
 
-/// Writes the files of [`report::files`], the rows first.
+/// Writes the files of [`files::files`], the rows first.
 fn write(args: &StudyArgs, study: &Study) -> Result<(), Failure> {
     let folder = &args.output;
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
@@ -102,7 +102,7 @@ fn write(args: &StudyArgs, study: &Study) -> Result<(), Failure> {
         file(folder, &format!("{}.png", chart.name))?
             .commit(|writer| write_rgb8(&plot.bytes, plot.width, plot.height, writer))?;
     }
-    let mut portraits = study.portraits.iter().zip(report::file_names(&scenes));
+    let mut portraits = study.portraits.iter().zip(files::file_names(&scenes));
     portraits.try_for_each(|(portrait, name)| write_portrait(folder, &name, portrait))
 }
 

@@ -3,9 +3,9 @@
 use super::{
     LEAST_ERROR, Row, Trade,
     draw::Color,
+    files::file_names,
     pareto_front,
     plot::{Chart, Series, plot},
-    report::file_names,
 };
 
 /// The plots that the rows give.

@@ -1,9 +1,11 @@
 //! What accuracy costs: renders in every mode, timed and compared with a converged picture.
 //!
-//! [`run`] measures and gives [`Row`]s; [`report`] makes tables and a page of them, [`charts`] plots.
+//! [`run`] measures and gives [`Row`]s; [`report`] makes tables and a page of them, [`charts`] plots, and
+//! [`files`] says what their files are called.
 
 pub mod charts;
 mod draw;
+pub mod files;
 mod measure;
 mod plan;
 pub mod plot;

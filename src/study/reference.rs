@@ -8,7 +8,7 @@ use std::{
 
 use glam::Vec3;
 
-use super::{StudyError, report::file_name};
+use super::{StudyError, files::file_name};
 use crate::{
     Rgb,
     aa::{AntiAliasing, levels::levels},
