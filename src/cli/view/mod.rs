@@ -1,6 +1,8 @@
 //! `whitted view`: a window to look around in; and the window of `render --preview`.
 
 #[cfg(feature = "view")]
+mod camera_text;
+#[cfg(feature = "view")]
 mod controls;
 #[cfg(feature = "view")]
 mod pane;
@@ -12,6 +14,8 @@ mod text;
 mod viewer;
 #[cfg(feature = "view")]
 mod window;
+#[cfg(feature = "view")]
+mod work;
 
 #[cfg(feature = "view")]
 pub(crate) use preview::PreviewWindow;

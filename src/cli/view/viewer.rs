@@ -2,23 +2,21 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Duration;
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use whitted::aa::AntiAliasing;
 use whitted::camera::Camera;
 use whitted::film::{Label, OutputFile};
 use whitted::render::RenderOptions;
 use whitted::render::refine::{Canvas, Shown};
-use whitted::scene::{CameraPlan, Orbit, Scene};
+use whitted::scene::{Orbit, Scene};
 
 use super::super::args::{CONTROLS, ViewArgs};
 use super::super::failure::Failure;
 use super::super::{options, streams};
+use super::camera_text::{camera_text, given_flags};
 use super::controls::Action;
-
-/// How long the camera must rest before a pass other than the first is begun.
-const REST: Duration = Duration::from_millis(80);
+use super::work::Work;
 
 /// Rays, either way, by which what is seen is measured.
 const PROBES: u32 = 9;
@@ -54,13 +52,6 @@ impl Viewer {
         if !modes.contains(&aa) {
             modes.push(aa);
         }
-        let mut given = String::new();
-        if let Some(up) = args.seen.up {
-            given = format!(" --up {}", numbers(up.to_array(), ","));
-        }
-        if let Some(fov) = args.seen.fov {
-            given = format!("{given} --fov {fov:?}");
-        }
         let options = RenderOptions {
             size: Some(size),
             aa,
@@ -79,7 +70,7 @@ impl Viewer {
             options,
             modes,
             text: Text::Status,
-            given,
+            given: given_flags(&args.seen),
             quiet,
             is_stale: true,
         }
@@ -150,8 +141,7 @@ impl Viewer {
         self.is_stale = false;
         let options = RenderOptions { camera: self.camera(), ..self.options };
         let (scene, canvas) = (Arc::clone(&self.scene), Arc::clone(&self.canvas));
-        let number = canvas.begin();
-        Some(Work { scene, canvas, number, options })
+        Some(Work::begin(scene, canvas, options))
     }
 
     /// The line that tells how far the picture is and how good.
@@ -216,29 +206,6 @@ impl Viewer {
     }
 }
 
-/// A picture to render, for a thread of its own.
-pub(super) struct Work {
-    scene: Arc<Scene>,
-    canvas: Arc<Canvas>,
-    number: u64,
-    options: RenderOptions,
-}
-
-impl Work {
-    /// Renders until the picture is done or no longer wanted; what went wrong otherwise.
-    pub(super) fn run(&self, changed: &(dyn Fn() + Sync)) -> Result<(), String> {
-        let is_wanted = || self.canvas.look().number == self.number;
-        let goes_on = || {
-            let left = REST.saturating_sub(self.canvas.look().started.elapsed());
-            std::thread::sleep(left);
-            is_wanted()
-        };
-        self.canvas
-            .render(self.number, &self.scene, &self.options, changed, &goes_on)
-            .map_err(|error| error.to_string())
-    }
-}
-
 /// How far the point is about which the camera turns: where the scene's camera looks at, unless that is but a
 /// direction, nearer than anything to be seen; then as far as the nearer things are.
 fn distance(scene: &Scene) -> Option<f64> {
@@ -258,24 +225,6 @@ fn distance(scene: &Scene) -> Option<f64> {
 fn free_name(scene: &str) -> PathBuf {
     let name = |number: u32| PathBuf::from(format!("{scene}-view-{number}.png"));
     (1..u32::MAX).map(name).find(|path| !path.exists()).unwrap_or_else(|| name(u32::MAX))
-}
-
-fn numbers(numbers: [f64; 3], between: &str) -> String {
-    numbers.map(|x| format!("{x:?}")).join(between)
-}
-
-/// The camera as flags and as TOML, with all digits.
-fn camera_text(plan: &CameraPlan, given: &str) -> String {
-    let CameraPlan { eye, look_at, up, vertical_fov } = plan;
-    let [eye, look_at, up] = [eye, look_at, up].map(DVec3::to_array);
-    format!(
-        "--eye {} --look-at {}{given}\ncamera = {{ eye = [{}], look_at = [{}], up = [{}], vertical_fov = {vertical_fov:?} }}\n",
-        numbers(eye, ","),
-        numbers(look_at, ","),
-        numbers(eye, ", "),
-        numbers(look_at, ", "),
-        numbers(up, ", "),
-    )
 }
 
 #[cfg(test)]
@@ -333,30 +282,5 @@ mod tests {
         assert!(viewer.take_work().is_none());
         work.run(&|| ()).expect("rendered");
         assert!(viewer.take_work().is_some());
-    }
-
-    /// Oracle: the program's own parsers.
-    #[test]
-    fn the_camera_that_is_printed_is_read_back_to_the_last_bit() {
-        let mut first = viewer(&["--up", "0,2,0.5", "--fov", "33.3"]);
-        first.orbit.turn(12.3, 4.5);
-        first.orbit.zoom(0.77);
-        let text = camera_text(first.orbit.plan(), &first.given);
-        let (flags, toml) = text.split_once('\n').expect("two lines");
-        let words: Vec<&str> = flags.split(' ').collect();
-        assert_eq!(viewer(&words).orbit.plan(), first.orbit.plan());
-        let table: toml::Table = toml.parse().expect("TOML");
-        let vector = |name: &str| {
-            let values = table["camera"][name].as_array().expect("a list").clone();
-            let values: Vec<f64> = values.iter().map(|v| v.as_float().expect("a number")).collect();
-            DVec3::from_slice(&values)
-        };
-        let plan = CameraPlan {
-            eye: vector("eye"),
-            look_at: vector("look_at"),
-            up: vector("up"),
-            vertical_fov: table["camera"]["vertical_fov"].as_float().expect("a number"),
-        };
-        assert_eq!(plan, *first.orbit.plan());
     }
 }
