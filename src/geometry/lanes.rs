@@ -173,6 +173,25 @@ impl HitLanes {
     }
 }
 
+/// Rays side by side, each of which meets a shape.
+#[derive(Clone, Debug)]
+pub struct MetLanes {
+    /// Where they start.
+    pub origin: Vectors,
+    /// What rounding took from `origin`.
+    pub rest: Vectors,
+    /// Where they go.
+    pub dir: Vectors,
+    /// The parameter where they meet it.
+    pub t: Column,
+}
+
+impl MetLanes {
+    /// None yet.
+    pub const NONE: Self =
+        Self { origin: Vectors::ZERO, rest: Vectors::ZERO, dir: Vectors::ZERO, t: [0.0; LANES] };
+}
+
 /// The surfaces that rays side by side hit, as far as rays that go on from there depend on them.
 #[derive(Clone, Debug)]
 pub struct SurfaceLanes {
@@ -239,5 +258,65 @@ impl SurfaceLanes {
             self.start.set(k, self.start.get(k) + offset);
         }
         (self.uv[k], self.tint[k]) = (surface.uv, surface.tint);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Quad, Sphere, Triangle, hit::first_ahead};
+    use crate::math::random::SplitMix64;
+
+    /// Oracle: the surfaces of single rays. A step aside as long as these decides between hit and miss for some.
+    #[test]
+    fn surfaces_that_are_met_from_others_are_those_of_single_rays() {
+        let [a, b] = [DVec3::new(1.0, 0.2, 0.1), DVec3::new(-0.3, 0.4, 1.0)];
+        let shapes: [Shape; 3] = [
+            Sphere::try_new(DVec3::splat(0.1), 0.7).expect("a sphere").into(),
+            Quad::try_new(DVec3::splat(-0.4), a, b).expect("a quad").into(),
+            Triangle::try_new([DVec3::splat(-0.4), a, b]).expect("a triangle").into(),
+        ];
+        let mut random = SplitMix64::new(5);
+        let mut vector =
+            || DVec3::from_array(std::array::from_fn(|_| 2.0 * random.uniform() - 1.0));
+        for shape in &shapes {
+            let (mut met, mut beside, mut lanes) = (MetLanes::NONE, Vectors::ZERO, 0_u64);
+            let mut expected = Vec::new();
+            while expected.len() < LANES / 2 {
+                let (point, aside) = (vector() * 4.0, vector() * 0.8);
+                let (primitive, local, point_rest) = (1, point, vector() * 1e-17);
+                let from =
+                    Departure { primitive, face: 0, inward: false, local, point, point_rest };
+                let ray =
+                    Ray { from: Some(from), ..Ray::new(point + aside, vector() * 0.8 - point) };
+                let Some(crossing) = first_ahead(&shape.crossings_of(&ray, 0), f64::INFINITY)
+                else {
+                    continue;
+                };
+                let hit = Hit { t: crossing.t, primitive: 0, face: crossing.face };
+                let k = 2 * expected.len(); // every second lane
+                (met.t[k], lanes) = (hit.t, lanes | 1 << k);
+                met.origin.set(k, point);
+                met.rest.set(k, point_rest);
+                met.dir.set(k, ray.dir);
+                beside.set(k, ray.origin);
+                let is_direct = shape.crossings(&Ray::new(point, ray.dir))[0].t.is_finite();
+                expected.push((is_direct, shape.surface(&ray, &hit), ray.dir));
+            }
+            assert!(expected.iter().any(|one| one.0) && !expected.iter().all(|one| one.0));
+            let mut surfaces = SurfaceLanes::NONE;
+            assert!(shape.meet_directly(&mut met, &beside, lanes));
+            assert!(shape.surface_lanes(&met, lanes, true, &mut surfaces));
+            for (k, (_, surface, dir)) in expected.iter().enumerate() {
+                let mut single = SurfaceLanes::NONE;
+                single.set(2 * k, shape, surface, *dir);
+                let of = |surfaces: &SurfaceLanes| {
+                    let SurfaceLanes { point, local, facing, start, side, uv, .. } = surfaces;
+                    let vectors = [point, local, facing, start].map(|v| v.get(2 * k));
+                    (vectors, side[2 * k], uv[2 * k])
+                };
+                assert_eq!(of(&surfaces), of(&single), "{shape:?}, lane {k}");
+            }
+        }
     }
 }

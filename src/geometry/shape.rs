@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3, Vec3};
 use super::{
     Bounds, Cone, Cylinder, Face, Inward, Polygon, Quad, Similarity, Sphere, Triangle, flat,
     hit::{Crossing, Crossings, Hit, NO_CROSSINGS, Surface, first_ahead},
-    lanes::{Column, LANES, RayLanes, SurfaceLanes, hull, lanes},
+    lanes::{Column, LANES, MetLanes, RayLanes, SurfaceLanes, Vectors, hull, lanes},
     ray::{Departure, Ray},
     triangle,
 };
@@ -130,20 +130,19 @@ impl Shape {
         true
     }
 
-    /// The surfaces where the rays of the lanes `met`, from free space, meet this shape at `t`; their own coordinates
-    /// only `with_uv`.
+    /// The surfaces where the rays of the lanes `met`, from free space or other shapes, meet this shape; their own
+    /// coordinates only `with_uv`.
     ///
     /// Returns false, and does nothing, for shapes that are made for single rays.
     #[inline(always)]
     pub(crate) fn surface_lanes(
         &self,
-        rays: &RayLanes,
-        t: &Column,
+        rays: &MetLanes,
         met: u64,
         with_uv: bool,
         surfaces: &mut SurfaceLanes,
     ) -> bool {
-        let (origin, dir) = (rays.origin, rays.dir);
+        let MetLanes { origin, rest, dir, t } = rays;
         let plane = match self {
             Self::Sphere(s) => {
                 for k in hull(met) {
@@ -158,7 +157,7 @@ impl Shape {
         };
         if let Some(plane) = plane {
             for k in hull(met) {
-                let surface = flat::surface(plane, origin.get(k), dir.get(k), t[k], DVec3::ZERO);
+                let surface = flat::surface(plane, origin.get(k), dir.get(k), t[k], rest.get(k));
                 surfaces.set_if(k, met >> k & 1 != 0, &surface, dir.get(k));
             }
         }
@@ -219,6 +218,30 @@ impl Shape {
         let crossings = self.crossings(&direct);
         let same = crossings.iter().filter(|c| c.face == hit.face && c.t.is_finite());
         (direct, same.min_by(|a, b| near(a, b)).map(|c| c.t))
+    }
+
+    /// As [`met_directly`](Self::met_directly), for lanes of rays that start in the very points that they leave: those of
+    /// the lanes `met` that do not meet the shape from there are made to start `beside`, where they are known to.
+    ///
+    /// Returns false, and does nothing, for shapes that are made for single rays.
+    #[inline(always)]
+    pub(crate) fn meet_directly(&self, rays: &mut MetLanes, beside: &Vectors, met: u64) -> bool {
+        let mut crossed = [[f64::NAN; LANES]; 2];
+        let direct = RayLanes { origin: &rays.origin, dir: &rays.dir, from: None, used: met };
+        if !self.cross_lanes(&direct, hull(met), &mut crossed) {
+            return false;
+        }
+        let [first, second] = &crossed;
+        for k in hull(met) {
+            let (a, b) = (first[k], second[k]);
+            let is_first_nearer = (a - rays.t[k]).abs() <= (b - rays.t[k]).abs();
+            let t = if b.is_finite() & !(a.is_finite() & is_first_nearer) { b } else { a };
+            let (is_met, is_direct) = (met >> k & 1 != 0, t.is_finite());
+            rays.t[k] = if is_met & is_direct { t } else { rays.t[k] };
+            rays.origin.set_if(k, is_met & !is_direct, beside.get(k));
+            rays.rest.set_if(k, is_met & !is_direct, DVec3::ZERO);
+        }
+        true
     }
 
     /// The shape as it is seen from both sides.

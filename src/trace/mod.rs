@@ -20,8 +20,8 @@ use crate::{
     accel::Work,
     color::Rgb,
     geometry::{
-        Hit, Ray, Surface,
-        lanes::{HitLanes, LANES, RayLanes, Vectors, lanes},
+        Departure, Hit, Ray, Shape, Surface,
+        lanes::{HitLanes, LANES, MetLanes, RayLanes, Vectors, hull, lanes},
     },
     material::Material,
     scene::Scene,
@@ -37,6 +37,9 @@ pub const BATCH: usize = LANES;
 
 /// Fewer hits of a primitive than this are as fast one by one.
 const FEWEST: u32 = 3;
+
+/// Hits in fewer than one of so many lanes are as fast one by one, unless the rays come from the camera.
+const SPARSEST: usize = 4;
 
 /// The least weight in a sample of a hit whose cell counts.
 const WEIGHT_OF_CELLS: f32 = 0.25;
@@ -104,8 +107,7 @@ struct Batch {
     tasks: Vec<Task>,
     /// The rays by themselves, unless they come from the camera.
     rays: Vec<Ray>,
-    origin: Vectors,
-    dir: Vectors,
+    met: MetLanes,
     hits: HitLanes,
 }
 
@@ -127,7 +129,7 @@ pub struct Tracer<'a> {
 impl<'a> Tracer<'a> {
     /// A tracer that casts no ray of a level above `depth`, camera rays having level 1.
     pub fn new(scene: &'a Scene, depth: u32) -> Self {
-        let (origin, dir) = (Vectors::ZERO, Vectors::ZERO);
+        let (met, hits) = (MetLanes::NONE, HitLanes::NONE);
         let (tasks, rays) = (Vec::new(), Vec::new());
         Self {
             scene,
@@ -135,7 +137,7 @@ impl<'a> Tracer<'a> {
             counts: RayCounts::default(),
             rays: Vec::new(),
             tasks: Vec::new(),
-            batch: Box::new(Batch { tasks, rays, origin, dir, hits: HitLanes::NONE }),
+            batch: Box::new(Batch { tasks, rays, met, hits }),
             lit: Box::new(Lit::new()),
             gathered: Vec::new(),
         }
@@ -161,9 +163,10 @@ impl<'a> Tracer<'a> {
             self.counts.camera += count as u64;
             let batch = &mut *self.batch;
             for (k, dir) in dirs.take(BATCH).enumerate() {
-                batch.origin.set(k, eye);
-                batch.dir.set(k, dir);
+                batch.met.origin.set(k, eye);
+                batch.met.dir.set(k, dir);
             }
+            batch.met.rest = Vectors::ZERO;
             batch.tasks.clear();
             let task = |sample| Task { weight: Rgb::ONE, level: 1, sample, path: Path::START };
             batch.tasks.extend((0..count as u32).map(task));
@@ -194,7 +197,7 @@ impl<'a> Tracer<'a> {
         batch.rays.clear();
         batch.rays.extend(self.rays.drain(start..));
         for (k, ray) in batch.rays.iter().enumerate() {
-            batch.dir.set(k, ray.dir);
+            batch.met.dir.set(k, ray.dir);
         }
         true
     }
@@ -205,7 +208,8 @@ impl<'a> Tracer<'a> {
         let is_camera = batch.tasks[0].level == 1;
         let used = u64::MAX >> (LANES - batch.tasks.len());
         if is_camera {
-            let rays = RayLanes { origin: &batch.origin, dir: &batch.dir, from: None, used };
+            let MetLanes { origin, dir, .. } = &batch.met;
+            let rays = RayLanes { origin, dir, from: None, used };
             scene.accel().nearest_packet(&rays, &mut batch.hits);
         } else {
             batch.hits.t = [f64::INFINITY; LANES];
@@ -215,6 +219,7 @@ impl<'a> Tracer<'a> {
                 }
             }
         }
+        batch.met.t = batch.hits.t;
         let hit = used & batch.hits.found();
         if is_camera {
             self.counts.camera_hit += u64::from(hit.count_ones());
@@ -242,18 +247,19 @@ impl<'a> Tracer<'a> {
     fn meet(&mut self, primitive: u32, same: u64, is_camera: bool) {
         let scene = self.scene;
         let (shape, material) = (scene.shape(primitive), scene.material(primitive));
-        let batch = &*self.batch;
         let goes_on = material.reflection > 0.0 || material.is_transmissive();
-        let together = is_camera && !goes_on && same.count_ones() >= FEWEST && {
-            let rays = RayLanes { origin: &batch.origin, dir: &batch.dir, from: None, used: same };
-            let with_uv = material.texture.needs_uv();
-            shape.surface_lanes(&rays, &batch.hits.t, same, with_uv, &mut self.lit.surfaces)
-        };
+        let together = !goes_on
+            && same.count_ones() >= FEWEST
+            && (is_camera || self.start_in_points(shape, same))
+            && {
+                let (rays, with_uv) = (&self.batch.met, material.texture.needs_uv());
+                shape.surface_lanes(rays, same, with_uv, &mut self.lit.surfaces)
+            };
         if !together {
             for k in lanes(same) {
                 let hit = self.batch.hits.get(k);
                 let ray = if is_camera {
-                    Ray::new(self.batch.origin.get(k), self.batch.dir.get(k))
+                    Ray::new(self.batch.met.origin.get(k), self.batch.met.dir.get(k))
                 } else {
                     self.batch.rays[k]
                 };
@@ -275,6 +281,25 @@ impl<'a> Tracer<'a> {
                 }
             }
         }
+    }
+
+    /// Has the rays of the lanes `same`, which hit the same shape, start in the points that they leave, as far as they
+    /// meet it from there; returns false if they had better be taken one by one.
+    #[inline(always)]
+    fn start_in_points(&mut self, shape: &Shape, same: u64) -> bool {
+        if hull(same).len() > SPARSEST * same.count_ones() as usize {
+            return false;
+        }
+        let (batch, mut beside) = (&mut *self.batch, Vectors::ZERO);
+        for k in lanes(same) {
+            let ray = &batch.rays[k];
+            let others = |from: &&Departure| from.primitive != batch.hits.primitive[k];
+            let Some(from) = ray.from.as_ref().filter(others) else { return false };
+            batch.met.origin.set(k, from.point);
+            batch.met.rest.set(k, from.point_rest);
+            beside.set(k, ray.origin);
+        }
+        shape.meet_directly(&mut batch.met, &beside, same)
     }
 
     /// Puts the rays that a surface reflects and transmits on the list.
@@ -307,7 +332,7 @@ impl<'a> Tracer<'a> {
     fn light(&mut self) {
         let (scene, batch) = (self.scene, &*self.batch);
         for light in scene.lights() {
-            let asked = self.lit.face(light, &batch.dir);
+            let asked = self.lit.face(light, &batch.met.dir);
             self.counts.shadow += u64::from(asked.count_ones());
             for k in lanes(asked) {
                 self.gathered[batch.tasks[k].sample as usize].rays += 1;

@@ -16,7 +16,7 @@ use crate::{
     },
     geometry::{
         Crossing, Hit, Ray, Shape, Surface,
-        lanes::{Departures, HitLanes, LANES, RayLanes, SurfaceLanes, Vectors, lanes},
+        lanes::{Departures, HitLanes, LANES, MetLanes, RayLanes, SurfaceLanes, Vectors, lanes},
     },
 };
 
@@ -115,7 +115,9 @@ fn check_surfaces(accel: &Accel, rays: &RayLanes, hits: &HitLanes, expected: &Su
         let shape = accel.shape(hits.primitive[open.trailing_zeros() as usize]);
         let same = hits.alike(open);
         open &= !same;
-        if shape.surface_lanes(rays, &hits.t, same, true, &mut found) {
+        let (origin, dir) = (rays.origin.clone(), rays.dir.clone());
+        let met = MetLanes { origin, rest: Vectors::ZERO, dir, t: hits.t };
+        if shape.surface_lanes(&met, same, true, &mut found) {
             for k in lanes(same) {
                 let bits = |all: &SurfaceLanes| {
                     let vectors = [&all.point, &all.local, &all.facing, &all.start];
