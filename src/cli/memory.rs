@@ -16,8 +16,8 @@ pub(crate) fn picture_bytes(width: u32, height: u32) -> u128 {
     Film::memory_bytes(width, height) + u128::from(width) * u128::from(height) * 6
 }
 
-/// Bytes that are kept of the pixels on the way to an error or a time, at least; those that are refined take about
-/// twice as much.
+/// Bytes that are kept of the pixels on the way to an error or a time, about; those in smooth parts take less, those
+/// that are refined twice as much.
 pub(crate) fn goal_bytes(width: u32, height: u32) -> u128 {
     u128::from(width) * u128::from(height) * 100
 }

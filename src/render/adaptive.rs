@@ -133,12 +133,11 @@ impl Adaptive {
             return;
         }
         let traced = Mutex::new(Vec::new());
-        let (area, outlooks) = (&self.area, &self.known.outlooks);
+        let area = &self.area;
         // Corners belong to the pixels up and left of them too.
         let may_exceed = |x: i64, y: i64| {
             let (x, y) = (x.clamp(area.x0, area.x1 - 1), y.clamp(area.y0, area.y1 - 1));
-            let (column, row) = area.tile_of(x, y);
-            outlooks.at(column, row).may_exceed(threshold)
+            self.known.outlook(x, y).may_exceed(threshold)
         };
         crew.run(self.corners.area(), false, stop, |sampler, scratch, tile| {
             let (left, top) = (tile.x0 - 1, tile.y0 - 1);
@@ -171,12 +170,7 @@ impl Adaptive {
     /// The corners in a tile that pixels above the threshold will look at, and that are not traced yet.
     fn wanted_corners(&self, tile: &Area, threshold: Threshold) -> Vec<(i64, i64)> {
         let (area, centers) = (&self.area, &self.centers);
-        let around = Area {
-            x0: (tile.x0 - 1).max(area.x0),
-            y0: (tile.y0 - 1).max(area.y0),
-            x1: tile.x1.min(area.x1),
-            y1: tile.y1.min(area.y1),
-        };
+        let around = Area { x0: tile.x0 - 1, y0: tile.y0 - 1, ..*tile }.common(area);
         let (mut is_wanted, corners) = (vec![false; tile.len()], self.corners.of(tile));
         for ((x, y), pixel) in self.known.above(&around, threshold) {
             if pixel.stage > 0 || !is_picked(threshold, x, y) {

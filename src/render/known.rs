@@ -77,12 +77,11 @@ impl Known {
             let alike = suspects.iter().filter(|(_, look)| look.contrast < ONE_COLOR);
             lock(&of_one_color).extend(alike.map(|(place, _)| tile.pixel_at(*place)));
             let colors = colors_of(tile, &suspects, centers);
-            let samples = tile.pixels().map(|(x, y)| u32::from(centers.at(x, y).rays > 0));
-            let samples = samples.collect();
+            let is_traced = |(x, y)| u32::from(centers.at(x, y).rays > 0);
+            let samples = tile.pixels().map(is_traced).collect();
             let outlook = Outlook::of(&pixels);
             let mut known = lock(&known);
-            let (column, row) = area.tile_of(tile.x0, tile.y0);
-            *known.outlooks.at_mut(column, row) = outlook;
+            *known.outlook_mut(tile.x0, tile.y0) = outlook;
             known.colors.put(tile, colors);
             known.samples.put(tile, samples);
             if !suspects.is_empty() || outlook.may_exceed(least) || stages.is_empty() {
@@ -94,7 +93,6 @@ impl Known {
 
     /// Adds what may hide at these places to what the picture is expected to be off by.
     fn expect_hidden(&mut self, mut places: Vec<(i64, i64)>) {
-        let area = *self.pixels.area();
         // Sums depend on their order, which that of the tiles must not.
         places.sort_unstable_by_key(|&(x, y)| (y, x));
         for (x, y) in places {
@@ -103,9 +101,19 @@ impl Known {
             if let Some(pixel) = self.pixels.get_mut(x, y) {
                 pixel.worth.expected += hidden;
             }
-            let (column, row) = area.tile_of(x, y);
-            self.outlooks.at_mut(column, row).expected += f64::from(hidden);
+            self.outlook_mut(x, y).expected += f64::from(hidden);
         }
+    }
+
+    /// The outlook of the tile that holds a pixel.
+    pub(super) fn outlook(&self, x: i64, y: i64) -> &Outlook {
+        let (column, row) = self.pixels.area().tile_of(x, y);
+        self.outlooks.at(column, row)
+    }
+
+    fn outlook_mut(&mut self, x: i64, y: i64) -> &mut Outlook {
+        let (column, row) = self.pixels.area().tile_of(x, y);
+        self.outlooks.at_mut(column, row)
     }
 
     /// The pixels of a part that are above the threshold, tile by tile.
@@ -119,8 +127,7 @@ impl Known {
 
     /// Takes out the pixels of a tile that are above the threshold, so that those close together are close in the list.
     pub(super) fn choose(&mut self, tile: &Area, threshold: Threshold) -> Vec<Chosen> {
-        let (column, row) = self.pixels.area().tile_of(tile.x0, tile.y0);
-        if !self.outlooks.at(column, row).may_exceed(threshold) {
+        if !self.outlook(tile.x0, tile.y0).may_exceed(threshold) {
             return Vec::new();
         }
         let pixels = self.pixels.of_mut(tile);
@@ -155,9 +162,7 @@ impl Known {
             }
             pixels[tile.place_of(x, y)] = pixel;
         }
-        let outlook = Outlook::of(pixels);
-        let (column, row) = self.pixels.area().tile_of(tile.x0, tile.y0);
-        *self.outlooks.at_mut(column, row) = outlook;
+        *self.outlook_mut(tile.x0, tile.y0) = Outlook::of(self.pixels.of(tile));
     }
 
     /// What the next stages of all pixels are worth, and take.

@@ -98,7 +98,7 @@ impl Area {
     }
 
     /// What two areas have in common.
-    fn common(&self, other: &Self) -> Self {
+    pub(super) fn common(&self, other: &Self) -> Self {
         Self {
             x0: self.x0.max(other.x0),
             y0: self.y0.max(other.y0),
