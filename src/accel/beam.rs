@@ -16,7 +16,12 @@ use std::ops::RangeInclusive;
 
 use glam::DVec3;
 
-use super::{frame::Frame, node::Node, simd::Simd};
+use super::{
+    frame::Frame,
+    leaf::Spheres,
+    node::{Node, Run},
+    simd::Simd,
+};
 use crate::geometry::lanes::LANES;
 
 /// The steepest a ray may be against the axis.
@@ -155,9 +160,35 @@ impl Beam {
     /// Which children of `node` the beam may meet within `limit` along its axis, and where it enters each.
     #[inline(always)]
     pub(super) fn test<S: Simd>(&self, simd: S, node: &Node, limit: f32) -> (u32, S::F) {
+        let planes =
+            |axis: usize| (simd.load(&node.planes[axis]), simd.load(&node.planes[3 + axis]));
+        self.boxes(simd, planes, limit)
+    }
+
+    /// Which of the spheres of a leaf the beam may meet within `limit` along its axis, judged by their boxes. What a
+    /// radius is enlarged by is twice a pad.
+    #[inline(always)]
+    pub(super) fn spheres<S: Simd>(&self, simd: S, spheres: &Spheres, run: Run, limit: f32) -> u32 {
+        let leaf = spheres.rows.leaf(run);
+        let radius = simd.add(leaf.row(simd, 3), simd.splat(spheres.margin));
+        let planes = |axis: usize| {
+            let center = leaf.row(simd, axis);
+            (simd.sub(center, radius), simd.add(center, radius))
+        };
+        leaf.all() & self.boxes(simd, planes, limit).0
+    }
+
+    /// Which of eight boxes with these `planes` along each axis the beam may meet, and where it enters each.
+    #[inline(always)]
+    fn boxes<S: Simd>(
+        &self,
+        simd: S,
+        planes: impl Fn(usize) -> (S::F, S::F),
+        limit: f32,
+    ) -> (u32, S::F) {
         let Axis { order, forward, start, .. } = self.axis;
         let (zero, start) = (simd.splat(0.0), simd.splat(start));
-        let (low, high) = planes(simd, node, order[0]);
+        let (low, high) = planes(order[0]);
         let (near, far) = if forward < 0.0 {
             (simd.sub(start, high), simd.sub(start, low))
         } else {
@@ -166,7 +197,7 @@ impl Beam {
         let (near, far) = (simd.max(near, zero), simd.min(far, simd.splat(limit)));
         let mut met = simd.le(near, far);
         for k in 0..2 {
-            let (low, high) = planes(simd, node, order[1 + k]);
+            let (low, high) = planes(order[1 + k]);
             let (least, largest) = (simd.splat(self.slopes[k][0]), simd.splat(self.slopes[k][1]));
             let (from, to) = (simd.splat(self.begin[k][0]), simd.splat(self.begin[k][1]));
             let from = simd.min(simd.mul_add(least, near, from), simd.mul_add(least, far, from));
@@ -193,10 +224,4 @@ fn range(column: &Singles, some: u64) -> [f32; 2] {
         least.into_iter().fold(f32::INFINITY, f32::min),
         largest.into_iter().fold(f32::NEG_INFINITY, f32::max),
     ]
-}
-
-/// The planes of a node's boxes along an axis.
-#[inline(always)]
-fn planes<S: Simd>(simd: S, node: &Node, axis: usize) -> (S::F, S::F) {
-    (simd.load(&node.planes[axis]), simd.load(&node.planes[3 + axis]))
 }

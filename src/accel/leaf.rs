@@ -97,7 +97,7 @@ pub(super) fn sub<S: Simd>(simd: S, a: [S::F; 3], b: [S::F; 3]) -> [S::F; 3] {
 pub(super) struct Spheres {
     pub(super) rows: Rows<4>,
     /// By how much a radius may be off to either side.
-    margin: f32,
+    pub(super) margin: f32,
 }
 
 impl Spheres {

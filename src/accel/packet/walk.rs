@@ -17,6 +17,9 @@ use crate::{
 /// Fewer rays than this are as fast one by one where the triangles of a leaf are tried.
 const FEWEST_SEEING: u32 = 20;
 
+/// So many rays that try all spheres of a leaf, one by one, take as long as one sphere that all rays try.
+const RAYS_FOR_EACH: u32 = 12;
+
 /// The stack of the walk: each node on the way down leaves at most seven of its children to be visited later.
 const STACK: usize = MAX_DEPTH * 7 + 1;
 
@@ -71,7 +74,7 @@ impl Packet {
                         let eye = eye.get_or_insert_with(|| Eye::of(self));
                         eye.leaf(simd, tree, self, searches, run, met);
                     }
-                    leaf => self.leaf(simd, tree, searches, met, prepared, leaf),
+                    leaf => self.leaf(simd, tree, searches, (met, limit), prepared, leaf),
                 }
                 limit = self.deepest();
             }
@@ -93,12 +96,19 @@ impl Packet {
         simd: S,
         tree: &Tree,
         searches: &mut impl Searches<S>,
-        met: u64,
+        (met, limit): (u64, f32),
         prepared: &Prepared,
         leaf: Content,
     ) {
         match leaf {
             Content::Spheres(run) => {
+                let near = self.beam.spheres(simd, &tree.spheres, run, limit);
+                if near.count_ones() * RAYS_FOR_EACH <= met.count_ones() {
+                    for lane in bits(near) {
+                        searches.test(simd, self, run.first as usize + lane, met);
+                    }
+                    return;
+                }
                 for k in lanes(met) {
                     let (ray, limit) = (self.leaf_ray(prepared, k), self.limit[k]);
                     let candidates = tree.spheres.sort_out(simd, run, &ray, limit);
