@@ -27,7 +27,11 @@ impl Sequence {
 
     /// The place with this number, from 0; in `[0, 1)` both ways.
     pub fn place(&self, index: u32) -> DVec2 {
-        let [x, y] = [index, second_dimension(index).reverse_bits()];
+        let y = match SECOND.get(index as usize) {
+            Some(y) => *y,
+            None => second_dimension(index).reverse_bits(),
+        };
+        let x = index;
         let unit = |reversed: u32, seed| {
             f64::from(permute(reversed, seed).reverse_bits()) / 4_294_967_296.0
         };
@@ -35,13 +39,24 @@ impl Sequence {
     }
 }
 
+/// The reversed digits of the second dimension's beginning.
+const SECOND: [u32; 64] = {
+    let mut second = [0; 64];
+    let mut index = 0;
+    while index < second.len() {
+        second[index] = second_dimension(index as u32).reverse_bits();
+        index += 1;
+    }
+    second
+};
+
 /// A number that looks random for each `x`.
 pub(crate) fn hash(x: u64) -> u64 {
     SplitMix64::new(x).next_u64()
 }
 
 /// Sobol's second dimension, whose direction numbers come from the polynomial x + 1.
-fn second_dimension(index: u32) -> u32 {
+const fn second_dimension(index: u32) -> u32 {
     let (mut direction, mut result, mut bits) = (1_u32 << 31, 0, index);
     while bits != 0 {
         if bits & 1 == 1 {
