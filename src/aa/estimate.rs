@@ -40,6 +40,12 @@ pub fn smooth_error(curve: f32, slope: f32, corrected: bool) -> f32 {
     curve * (share + CENTER_CURVE * NOISE * noise * noise)
 }
 
+/// The error of a centre's colour where an edge passes by, from the [squared differences](Look::edge) across it.
+#[inline(always)]
+pub fn edge_error(edge: f32) -> f32 {
+    CENTER_EDGE * edge
+}
+
 /// A pixel's centre among its eight neighbours, some of whose rays met other things.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
@@ -62,7 +68,7 @@ pub struct Look {
 const RING: [usize; 8] = [0, 1, 2, 5, 8, 7, 6, 3];
 
 /// The neighbours in the order of [`Look::at`], and what they count in [`Look::edge`].
-const NEIGHBOURS: [(usize, f32); 8] =
+pub const NEIGHBOURS: [(usize, f32); 8] =
     [(1, 1.0), (3, 1.0), (5, 1.0), (7, 1.0), (0, 0.5), (2, 0.5), (6, 0.5), (8, 0.5)];
 
 impl Look {
@@ -97,7 +103,7 @@ impl Look {
 
     /// The error of the centre's colour.
     pub fn center_error(&self) -> f32 {
-        (CENTER_EDGE * self.edge).max(smooth_error(self.curve, self.slope, false))
+        edge_error(self.edge).max(smooth_error(self.curve, self.slope, false))
     }
 }
 

@@ -6,7 +6,7 @@ use super::plane::{Area, Plane, TILE_SIDE};
 use crate::{
     aa::{
         Sample,
-        estimate::{Look, smooth_error},
+        estimate::{Look, NEIGHBOURS, edge_error, smooth_error},
         levels::levels,
     },
     color::Rgb,
@@ -83,25 +83,69 @@ impl Window {
         errors
     }
 
+    /// The estimated squared error of each of the tile's centres, row by row, as [`Look::center_error`] has it.
+    pub(super) fn center_errors(&self) -> Vec<f32> {
+        let mut errors = self.smooth_errors(false);
+        for (starts, errors) in self.rows().zip(errors.chunks_mut(self.pixels())) {
+            if self.differing(starts).iter().all(|differs| *differs == 0) {
+                continue;
+            }
+            for (error, edge) in errors.iter_mut().zip(self.edges(starts)) {
+                *error = error.max(edge_error(edge));
+            }
+        }
+        errors
+    }
+
     /// The pixels of the tile whose neighbours' rays met anything else: where in it they are, counted row by row, and
     /// their looks.
     pub(super) fn suspects(&self) -> Vec<(usize, Look)> {
         let mut suspects = Vec::new();
         let count = self.pixels();
         for (row, starts) in self.rows().enumerate() {
-            let mut differ = [0; SIDE];
-            let middle = starts[1] + 1;
-            let centers = &self.signatures[middle..middle + count];
-            for start in starts.into_iter().flat_map(|start| start..start + 3) {
-                let signatures = &self.signatures[start..start + count];
-                for k in 0..count {
-                    differ[k] |= signatures[k] ^ centers[k];
-                }
-            }
-            let others = (0..count).filter(|&k| differ[k] != 0);
-            suspects.extend(others.map(|k| (row * count + k, self.look(middle + k))));
+            let differing = self.differing(starts);
+            let others = (0..count).filter(|&k| differing[k] != 0);
+            suspects.extend(others.map(|k| (row * count + k, self.look(starts[1] + 1 + k))));
         }
         suspects
+    }
+
+    /// Zero for those pixels of a row whose neighbours' rays all met the same.
+    fn differing(&self, starts: [usize; 3]) -> [u32; SIDE] {
+        let mut differing = [0; SIDE];
+        let count = self.pixels();
+        let row = |start: usize| &self.signatures[start..start + count];
+        let centers = row(starts[1] + 1);
+        for start in starts.into_iter().flat_map(|start| start..start + 3) {
+            let signatures = row(start);
+            for k in 0..count {
+                differing[k] |= signatures[k] ^ centers[k];
+            }
+        }
+        differing
+    }
+
+    /// [`Look::edge`] of the pixels of a row.
+    fn edges(&self, starts: [usize; 3]) -> [f32; SIDE] {
+        let mut edges = [0.0; SIDE];
+        let count = self.pixels();
+        let middle = starts[1] + 1;
+        for (place, weight) in NEIGHBOURS {
+            let other = starts[place / 3] + place % 3;
+            let mut squares = [0.0; SIDE];
+            for channel in &self.levels {
+                let (here, there) = (&channel[middle..][..count], &channel[other..][..count]);
+                for k in 0..count {
+                    squares[k] += (there[k] - here[k]) * (there[k] - here[k]);
+                }
+            }
+            let (here, there) =
+                (&self.signatures[middle..][..count], &self.signatures[other..][..count]);
+            for k in 0..count {
+                edges[k] += if here[k] == there[k] { 0.0 } else { weight / 3.0 * squares[k] };
+            }
+        }
+        edges
     }
 
     /// Pixels in a row of the tile.
@@ -173,6 +217,35 @@ pub(super) fn corrected(tile: &Area, centers: &Plane<Sample>) -> Vec<Rgb> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::random::SplitMix64;
+
+    /// Oracle: the looks of the pixels, one by one.
+    #[test]
+    fn centers_judged_row_by_row_are_those_judged_alone() {
+        let mut random = SplitMix64::new(3);
+        let sample = |_| {
+            let color = Rgb::splat(random.uniform() as f32) * Rgb::new(1.0, 0.5, 0.2);
+            let signature = u32::from(random.uniform() < 0.1);
+            Sample { color, signature, ..Sample::default() }
+        };
+        let centers = Plane::from_fn(Area { x0: 0, y0: 0, x1: 50, y1: 40 }, sample);
+        for tile in [
+            Area { x0: 0, y0: 0, x1: 16, y1: 16 },
+            Area { x0: 47, y0: 33, x1: 50, y1: 40 },
+            Area { x0: 16, y0: 16, x1: 17, y1: 18 },
+        ] {
+            let window = Window::of_centers(&tile, &centers);
+            let mut expected = window.smooth_errors(false);
+            for (place, look) in window.suspects() {
+                expected[place] = look.center_error();
+            }
+            let errors = window.center_errors();
+            assert_eq!(errors.len(), expected.len());
+            for (error, expected) in errors.iter().zip(&expected) {
+                assert!((error - expected).abs() <= 1e-5 * expected, "{error}, {expected}");
+            }
+        }
+    }
 
     /// Oracle: rows of cells of which every second one is skipped look alike, but are not one cell.
     #[test]

@@ -33,11 +33,7 @@ pub(super) fn centers<S: Sampler + Send>(crew: &Crew<S>, area: &Area) -> Picture
     let mut centers = Plane::new(*area, Sample::default());
     trace_centers(crew, &mut centers, || false);
     let squared_error = sum_of_tiles(area, |tile| {
-        let window = Window::of_centers(tile, &centers);
-        let mut errors = window.smooth_errors(false);
-        for (place, look) in window.suspects() {
-            errors[place] = look.center_error();
-        }
+        let errors = Window::of_centers(tile, &centers).center_errors();
         errors.into_iter().map(f64::from).sum()
     });
     Picture {
