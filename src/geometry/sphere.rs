@@ -5,6 +5,7 @@ use glam::{DVec2, DVec3};
 use super::{
     Bounds, Similarity,
     hit::{Crossing, Crossings, NO_CROSSINGS, Surface},
+    lanes::SurfaceLanes,
     ray::{Departure, Ray},
     shape_error::ShapeError,
 };
@@ -104,6 +105,14 @@ impl Sphere {
         let point = self.center + local;
         let error = Surface::error_bound(normal, point.abs() + self.radius);
         Surface { local, ..Surface::plain(point, normal, error) }
+    }
+
+    /// The surface of a lane that [`surface_at`](Self::surface_at) has filled, in full.
+    #[inline(always)]
+    pub(crate) fn surface_of_lane(&self, surfaces: &SurfaceLanes, lane: usize) -> Surface {
+        let (normal, point) = (surfaces.shading(lane), surfaces.point.get(lane));
+        let error = Surface::error_bound(normal, point.abs() + self.radius);
+        Surface { local: surfaces.local.get(lane), ..Surface::plain(point, normal, error) }
     }
 
     /// The surface coordinates where the normal is this.

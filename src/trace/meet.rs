@@ -30,13 +30,25 @@ impl Tracer<'_> {
         let scene = self.scene;
         let (shape, material) = (scene.shape(primitive), scene.material(primitive));
         let goes_on = material.reflection > 0.0 || material.is_transmissive();
-        let together = !goes_on
+        let together = (!goes_on || matches!(shape, Shape::Sphere(_)))
             && same.count_ones() >= FEWEST
             && (is_camera || self.start_in_points(shape, same))
             && {
                 let (rays, with_uv) = (&self.batch.met, material.texture.needs_uv());
                 shape.surface_lanes(rays, same, with_uv, &mut self.lit.surfaces)
             };
+        if together && let (Shape::Sphere(sphere), true) = (shape, goes_on) {
+            for k in lanes(same) {
+                let surface = sphere.surface_of_lane(&self.lit.surfaces, k);
+                self.go_on(
+                    k,
+                    self.batch.met.dir.get(k),
+                    &self.batch.hits.get(k),
+                    &surface,
+                    material,
+                );
+            }
+        }
         if !together {
             for k in lanes(same) {
                 let hit = self.batch.hits.get(k);
