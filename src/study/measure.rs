@@ -3,7 +3,9 @@
 use std::{mem::take, path::Path};
 
 use super::{
-    Mode, Plan, Portrait, Row, Step, Study, StudyError, Trade, plan, reference::Reference,
+    Mode, Plan, Portrait, Row, Step, Study, StudyError, Trade,
+    plan::{self, DEPTH_MODE},
+    reference::Reference,
 };
 use crate::{
     aa::AntiAliasing,
@@ -90,37 +92,43 @@ impl Run<'_> {
         )
     }
 
-    /// Renders in all modes by turns, so that a busy moment of the machine does not fall on one of them alone.
+    /// Renders in all modes, at the scene's own depth.
     fn compare(&mut self, setting: &Setting, modes: &[Mode]) -> Result<Reference, StudyError> {
         let reference = self.reference(setting)?;
-        let mut renderings: Vec<Option<Rendering>> = vec![None; modes.len()];
-        let mut seconds = vec![Vec::new(); modes.len()];
         let depth = setting.scene.depth();
-        for repeat in 0..self.plan.repeats {
-            for (k, mode) in modes.iter().enumerate() {
-                let what = format!(
-                    "{}: {}, {} of {}",
-                    setting.name,
-                    mode.name(),
-                    repeat + 1,
-                    self.plan.repeats
-                );
-                self.step(what, mode.weight() * plan::pixels(setting.size));
-                let options = mode.options(setting.size, depth, self.plan.threads);
-                let rendering = render(setting.scene, &options, &|_| ())?;
-                seconds[k].push(rendering.seconds);
-                renderings[k] = Some(rendering);
-            }
-        }
+        let modes: Vec<(Mode, u32)> = modes.iter().map(|mode| (*mode, depth)).collect();
+        self.take_turns(setting, &modes, &reference)?;
+        Ok(reference)
+    }
+
+    /// Renders in all modes, each to a depth, by turns: in each round once, so that a busy moment of the machine does
+    /// not fall on one of them alone.
+    fn take_turns(
+        &mut self,
+        setting: &Setting,
+        modes: &[(Mode, u32)],
+        reference: &Reference,
+    ) -> Result<(), StudyError> {
+        let rounds = self.plan.repeats;
+        let mut times = vec![Vec::new(); modes.len()];
         let first = self.study.rows.len();
-        for ((mode, rendering), times) in modes.iter().zip(&renderings).zip(seconds) {
-            if let Some(rendering) = rendering {
-                let row = row(setting, mode.name(), rendering, median(times), &reference);
-                self.study.rows.push(row);
+        for round in 1..=rounds {
+            for ((mode, depth), seconds) in modes.iter().zip(&mut times) {
+                let name = mode.name();
+                let what =
+                    format!("{}: {name} to depth {depth}, {round} of {rounds}", setting.name);
+                self.step(what, mode.weight() * plan::pixels(setting.size));
+                let options = mode.options(setting.size, *depth, self.plan.threads);
+                let rendering = render(setting.scene, &options, &|_| ())?;
+                seconds.push(rendering.seconds);
+                if round == rounds {
+                    let row = row(setting, name, &rendering, median(take(seconds)), reference);
+                    self.study.rows.push(row);
+                }
             }
         }
         relate(&mut self.study.rows[first..]);
-        Ok(reference)
+        Ok(())
     }
 
     fn portray(&mut self, setting: &Setting, reference: &Reference) -> Result<(), StudyError> {
@@ -138,41 +146,29 @@ impl Run<'_> {
         let setting =
             Setting { trade: Trade::Depth, name: &name, scene, size: self.plan.small_size };
         let reference = self.reference(&setting)?;
-        let mode = Mode::Plain(AntiAliasing::Adaptive { error: 1.0, most: 64 });
-        for depth in 1..=scene.depth() {
-            self.step(format!("{name}: depth {depth}"), mode.weight() * plan::pixels(setting.size));
-            let options = mode.options(setting.size, depth, self.plan.threads);
-            let mut times = Vec::new();
-            let mut last = render(scene, &options, &|_| ())?;
-            times.push(last.seconds);
-            for _ in 1..self.plan.repeats {
-                last = render(scene, &options, &|_| ())?;
-                times.push(last.seconds);
-            }
-            let row = row(&setting, mode.name(), &last, median(times), &reference);
-            self.study.rows.push(row);
-        }
-        Ok(())
+        let depths: Vec<(Mode, u32)> =
+            (1..=scene.depth()).map(|depth| (DEPTH_MODE, depth)).collect();
+        self.take_turns(&setting, &depths, &reference)
     }
 
     /// What more or less time for the build of the tree gives back in that of the picture, by turns.
     fn builds(&mut self, name: &str, mut scene: Scene) -> Result<(), StudyError> {
-        let (size, repeats) = (self.plan.small_size, self.plan.repeats);
+        let (size, rounds) = (self.plan.small_size, self.plan.repeats);
         let reference =
             self.reference(&Setting { trade: Trade::Build, name, scene: &scene, size })?;
         let mode = Mode::Plain(AntiAliasing::None);
         let options = mode.options(size, scene.depth(), self.plan.threads);
         let mut times = vec![(Vec::new(), Vec::new()); Preset::ALL.len()];
         let first = self.study.rows.len();
-        for repeat in 1..=repeats {
+        for round in 1..=rounds {
             for (preset, (building, seconds)) in Preset::ALL.into_iter().zip(&mut times) {
-                let what = format!("{name}: {preset} build, {repeat} of {repeats}");
+                let what = format!("{name}: {preset} build, {round} of {rounds}");
                 self.step(what, plan::build_work(scene.primitive_count(), size));
                 scene = scene.rebuilt(preset);
                 let rendering = render(&scene, &options, &|_| ())?;
                 building.push(scene.bvh_stats().build_seconds);
                 seconds.push(rendering.seconds);
-                if repeat < repeats {
+                if round < rounds {
                     continue;
                 }
                 let setting = Setting { trade: Trade::Build, name, scene: &scene, size };
@@ -245,7 +241,10 @@ fn median(mut numbers: Vec<f64>) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use std::cell::RefCell;
+
     use super::*;
+    use crate::scene::{load_builtin, load_builtin_of};
 
     #[test]
     fn medians_are_in_the_middle() {
@@ -253,19 +252,52 @@ mod tests {
         assert_eq!(median(vec![3.0, 1.0, 9.0, 5.0]), 4.0);
     }
 
+    /// Tiny pictures, three rounds of them.
+    fn tiny() -> Plan {
+        Plan {
+            objects: Vec::new(),
+            sizes: vec![[4, 3]],
+            size: [4, 3],
+            small_size: [4, 3],
+            reference_rays: 4,
+            repeats: 3,
+            ..Plan::quick()
+        }
+    }
+
+    fn load(name: &str) -> Result<Scene, SceneError> {
+        match name.strip_prefix("spheres:") {
+            Some(count) => load_builtin_of("spheres", count.parse().ok()),
+            None => load_builtin(name),
+        }
+    }
+
+    /// Oracle: the numbers of modes, presets and depths. What is done in the end is what was to do.
+    #[test]
+    fn what_is_compared_takes_turns() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let plan = Plan { scenes: vec!["assignment".to_owned()], builds: vec![200], ..tiny() };
+        let steps = RefCell::new(Vec::new());
+        let study = super::run(&plan, &load, folder.path(), &|step| {
+            steps.borrow_mut().push(step.clone());
+        });
+        assert_eq!(study.expect("a study").portraits.len(), 1);
+        let steps = steps.into_inner();
+        let rounds: Vec<&str> =
+            steps.iter().filter_map(|step| step.what.rsplit_once(", ")).map(|(_, r)| r).collect();
+        let groups = [plan.modes.len(), Preset::ALL.len(), plan.few_modes.len(), 6];
+        let turns =
+            |n: usize| ["1 of 3", "2 of 3", "3 of 3"].into_iter().flat_map(move |r| vec![r; n]);
+        assert_eq!(rounds, groups.into_iter().flat_map(turns).collect::<Vec<_>>());
+        let last = steps.last().expect("a step");
+        let left = last.total - last.done - DEPTH_MODE.weight() * plan::pixels(plan.small_size);
+        assert!(left.abs() < 0.01 * last.total, "{left} of {} left", last.total);
+    }
+
     #[test]
     fn without_the_mode_none_nothing_is_a_multiple_of_it() {
         let folder = tempfile::tempdir().expect("a folder");
-        let plan = Plan {
-            scenes: Vec::new(),
-            objects: Vec::new(),
-            builds: Vec::new(),
-            sizes: vec![[4, 3]],
-            small_size: [4, 3],
-            reference_rays: 4,
-            ..Plan::quick()
-        };
-        let load = |name: &str| crate::scene::load_builtin(name);
+        let plan = Plan { scenes: Vec::new(), builds: Vec::new(), repeats: 1, ..tiny() };
         let rows = super::run(&plan, &load, folder.path(), &|_| ()).expect("a study").rows;
         assert!(rows.iter().any(|row| row.trade == Trade::Depth));
         for row in rows {

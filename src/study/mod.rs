@@ -1,5 +1,8 @@
 //! What accuracy costs: renders in every mode, timed and compared with a converged picture.
 //!
+//! The modes, depths or builds that stand beside each other in a table are rendered by turns, each once in a round, and
+//! the median of each one's times counts: what slows the machine down for a while slows all of them.
+//!
 //! [`run`] measures and gives [`Row`]s; [`report`] makes tables and a page of them, [`charts`] plots, and
 //! [`files`] says what their files are called.
 
@@ -65,7 +68,7 @@ pub struct Row {
     pub build: String,
     /// The time of that build; the median if it was repeated.
     pub build_seconds: f64,
-    /// The median of the repeats, of the render alone.
+    /// The median of the rounds, of the render alone.
     pub seconds: f64,
     /// Rays of all kinds.
     pub rays: u64,

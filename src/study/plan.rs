@@ -5,6 +5,11 @@ use std::num::NonZeroUsize;
 use super::Mode;
 use crate::{aa::AntiAliasing, accel::Preset};
 
+/// The mode in which pictures of several depths are rendered.
+pub(super) const DEPTH_MODE: Mode = Mode::Plain(AntiAliasing::Adaptive { error: 1.0, most: 64 });
+/// How many depths are rendered, as far as the time left is concerned: those of the assignment.
+const DEPTHS: f64 = 6.0;
+
 /// What to measure, and how thoroughly.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
@@ -28,7 +33,7 @@ pub struct Plan {
     pub small_size: [u32; 2],
     /// How many rays each pixel of a converged picture has.
     pub reference_rays: u32,
-    /// How many times a render is timed.
+    /// How many times a render is timed: once in each round of those that it is compared with.
     pub repeats: u32,
     /// How many threads render.
     pub threads: Option<NonZeroUsize>,
@@ -99,7 +104,8 @@ impl Plan {
         let few = weight(&self.few_modes);
         let objects = self.objects.len() as f64 * pixels(self.small_size) * few;
         let sizes: f64 = self.sizes.iter().map(|size| pixels(*size) * few).sum();
-        let depths = pixels(self.small_size) * (f64::from(self.reference_rays) + 6.0 * 9.0);
+        let depths = pixels(self.small_size)
+            * (f64::from(self.reference_rays) + repeats * DEPTHS * DEPTH_MODE.weight());
         let presets = repeats * Preset::ALL.len() as f64;
         let builds = self.builds.iter().map(|count| {
             pixels(self.small_size) * f64::from(self.reference_rays)

@@ -4,6 +4,10 @@ use std::fmt::Write;
 
 use super::{LEAST_ERROR, Row, Study, Trade, files::file_names, plot::Chart, svg::escaped};
 
+/// What the numbers are.
+const NUMBERS: &str = "Errors are root mean squares in levels of 255, against converged pictures. Times are medians of \
+    renders that took turns with those that they are compared with.";
+
 /// What stands in a table for what is not known.
 const DASH: &str = "–";
 
@@ -53,7 +57,7 @@ pub fn json(study: &Study, threads: usize) -> serde_json::Result<String> {
 
 /// The rows as tables for reading.
 pub fn markdown(rows: &[Row]) -> String {
-    let mut text = "# What accuracy costs\n\nErrors are root mean squares in levels of 255, against converged pictures.\n".to_owned();
+    let mut text = format!("# What accuracy costs\n\n{NUMBERS}\n");
     for (kind, heading) in [
         (Trade::Accuracy, "Error against time"),
         (Trade::Objects, "Cost by objects"),
@@ -122,9 +126,9 @@ pub fn html(rows: &[Row], charts: &[Chart], scenes: &[String]) -> String {
         <style>body { font: 16px/1.5 sans-serif; max-width: 70em; margin: 2em auto; padding: 0 1em; color: #202020 } \
         table { border-collapse: collapse; font-size: 13px } td, th { padding: 2px 8px; border-bottom: 1px solid #ddd; \
         text-align: right } figure { display: inline-block; margin: 8px } img { max-width: 100% } \
-        .maps img { width: 20em; image-rendering: pixelated }</style>\n<h1>What accuracy costs</h1>\n\
-        <p>Errors are root mean squares in levels of 255, against converged pictures.</p>\n"
+        .maps img { width: 20em; image-rendering: pixelated }</style>\n<h1>What accuracy costs</h1>\n"
         .to_owned();
+    let _ = writeln!(text, "<p>{NUMBERS}</p>");
     for chart in charts {
         let (name, title) = (escaped(&chart.name), escaped(&chart.title));
         let _ = writeln!(

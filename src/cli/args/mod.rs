@@ -205,7 +205,8 @@ pub(crate) struct StudyArgs {
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub(crate) size: Option<[u32; 2]>,
 
-    /// Timed repeats of each render; the median counts [default: 5, or 1 with --quick]
+    /// Timed repeats of each render, which takes turns with those that it is compared with; the median counts
+    /// [default: 5, or 1 with --quick]
     #[arg(long, value_name = "N", value_parser = parse_repeats, allow_negative_numbers = true)]
     pub(crate) repeats: Option<u32>,
 
