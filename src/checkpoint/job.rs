@@ -215,10 +215,13 @@ impl<'a> Job<'a> {
         self.state().outcome
     }
 
-    /// The estimated error of a picture towards an error or until a time that was read or stopped, if each of its
-    /// pixels has a ray: root mean square of all channels, in levels of 255.
+    /// The estimated error of a picture that is complete, or of one towards an error or until a time that was read or
+    /// stopped, if each of its pixels has a ray: root mean square of all channels, in levels of 255.
     pub fn estimated_rmse(&self) -> Option<f64> {
-        self.state().rmse
+        let state = self.state();
+        let accounts: Option<Vec<Account>> = state.accounts.iter().copied().collect();
+        let of_all = |accounts| Account::sum(&accounts).rmse(state.film.pixels().len());
+        accounts.map(of_all).or(state.rmse)
     }
 
     /// What the picture's file says of itself, as it is now.
@@ -261,7 +264,7 @@ impl Sink for Job<'_> {
             state.accounts[block.number] = Some(block.account);
             state.unsaved.push(block.number);
         } else if !block.samples.contains(&0) {
-            state.rmse = Some((block.account.squared_error / block.samples.len() as f64).sqrt());
+            state.rmse = Some(block.account.rmse(block.samples.len()));
         }
     }
 

@@ -112,7 +112,7 @@ pub(crate) fn warn(warnings: &[Warning], strict: bool, quiet: bool) -> Result<()
 }
 
 /// A file name may hold anything, and a message is to stay on its line.
-fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     let letters = text.trim_end().chars();
     let escape = |letter: char| {
         if letter.is_control() { letter.escape_debug().to_string() } else { letter.to_string() }

@@ -6,8 +6,8 @@ use whitted::film::{Label, read_label};
 
 use super::target::Picture;
 
-/// Whether the file holds the whole picture that `label` describes.
-pub(crate) fn is_finished(picture: &Picture, label: &Label) -> bool {
-    let Some(file) = picture.path().and_then(|path| File::open(path).ok()) else { return false };
-    read_label(file).is_ok_and(|found| found.as_ref() == Some(label))
+/// What the file says of itself, if it holds the whole picture that `label` describes; it may have missed its goal.
+pub(crate) fn find(picture: &Picture, label: &Label) -> Option<Label> {
+    let found = read_label(File::open(picture.path()?).ok()?).ok()??;
+    (Label { warning: None, ..found.clone() } == *label).then_some(found)
 }

@@ -18,9 +18,10 @@ use super::failure::Failure;
 use super::preview::Preview;
 use super::progress::Reporter;
 use super::signals::Signals;
-use super::streams;
 use super::target::Picture;
+use super::warnings::Warnings;
 use super::watch::{Course, Watcher};
+use super::{goal, streams};
 
 /// What is rendered, and where to.
 pub(crate) struct Order<'a> {
@@ -29,11 +30,14 @@ pub(crate) struct Order<'a> {
     pub(crate) label: &'a Label,
     pub(crate) picture: &'a Picture,
     pub(crate) signals: &'a Signals,
+    pub(crate) warnings: &'a Warnings,
 }
 
 /// A picture in its file.
 pub(crate) struct Finished {
     pub(crate) rendering: Rendering,
+    /// What it aimed at but did not reach.
+    pub(crate) missed: Option<String>,
     /// The time that writing took, in seconds.
     pub(crate) write: f64,
 }
@@ -44,7 +48,7 @@ pub(crate) fn run(
     args: &RenderArgs,
     preview: &mut Preview,
 ) -> Result<Finished, Failure> {
-    let Order { options, label, picture, signals, .. } = order;
+    let Order { options, label, picture, signals, warnings, .. } = order;
     let mode = match args.progress {
         _ if args.quiet => ProgressMode::None,
         // The line below the picture tells it.
@@ -70,7 +74,8 @@ pub(crate) fn run(
     };
     let path = picture.path().map(Checkpoint::path_for);
     let job = Job::new((*label).clone(), places, path, stop, &report);
-    find(&job, args)?;
+    find(&job, args, warnings)?;
+    warnings.check()?;
     reporter.begin(job.share_done());
     let watcher = Watcher {
         job: &job,
@@ -84,6 +89,7 @@ pub(crate) fn run(
             _ => "stopping: keeping the picture as it is; interrupt again to stop at once",
         },
         note: &|line| note(args, line),
+        warnings,
         tick: &|| reporter.tick(),
     };
     let effort = render(order, &job, &watcher, preview)?;
@@ -91,10 +97,12 @@ pub(crate) fn run(
     if !job.is_complete() {
         return Err(leave(order, &job));
     }
+    let missed = goal::missed(args, options.aa, &job.outcome(), job.estimated_rmse());
+    let label = Label { warning: missed.clone(), ..(*label).clone() };
     let writing = Instant::now();
-    finish(order, &job)?;
+    finish(order, &label, &job)?;
     let write = writing.elapsed().as_secs_f64();
-    Ok(Finished { rendering: job.into_rendering(&effort), write })
+    Ok(Finished { rendering: job.into_rendering(&effort), missed, write })
 }
 
 /// Writes a line that is not an error, unless nobody or only a program reads it.
@@ -105,7 +113,7 @@ fn note(args: &RenderArgs, line: &str) {
 }
 
 /// Takes what is in the checkpoint, if that is wanted and there is one.
-fn find(job: &Job, args: &RenderArgs) -> Result<(), Failure> {
+fn find(job: &Job, args: &RenderArgs, warnings: &Warnings) -> Result<(), Failure> {
     let Some(path) = job.checkpoint_path() else { return Ok(()) };
     let name = path.display();
     match (path.exists(), args.resume) {
@@ -114,13 +122,10 @@ fn find(job: &Job, args: &RenderArgs) -> Result<(), Failure> {
             note(args, &format!("{name}: there is no checkpoint; starting from the beginning"));
         }
         (true, false) => {
-            note(
-                args,
-                &format!(
-                    "warning: {name} is left from an interrupted render; --resume goes on from it (otherwise it is renamed to .old at \
-                     the first new checkpoint)"
-                ),
-            );
+            warnings.add(format!(
+                "{name} is left from an interrupted render; --resume goes on from it (otherwise it is renamed to .old at \
+                 the first new checkpoint)"
+            ));
         }
         (true, true) => match job.resume() {
             Ok(()) => note(args, &format!("going on from {name} {}", so_far(job))),
@@ -134,8 +139,10 @@ fn find(job: &Job, args: &RenderArgs) -> Result<(), Failure> {
 /// How far the picture is.
 fn so_far(job: &Job) -> String {
     match job.estimated_rmse() {
-        Some(error) => format!("at an estimated error of {error:.2} of 255 levels"),
-        None => format!("with {:.0} % done", 100.0 * job.share_done()),
+        Some(error) if !job.is_complete() => {
+            format!("at an estimated error of {error:.2} of 255 levels")
+        }
+        _ => format!("with {:.0} % done", 100.0 * job.share_done()),
     }
 }
 
@@ -161,7 +168,7 @@ fn render(
         scope.spawn(|| watcher.watch(terminal));
         let Some(window) = window else { return work() };
         let work = scope.spawn(work);
-        window.show(job, course);
+        window.show(job, course, order.warnings);
         work.join().unwrap_or_else(|panic| resume_unwind(panic))
     })
 }
@@ -196,13 +203,13 @@ fn leave(order: &Order, job: &Job) -> Failure {
 }
 
 /// Writes the picture and deletes its checkpoint; if it cannot be written, brings the checkpoint up to date instead.
-fn finish(order: &Order, job: &Job) -> Result<(), Failure> {
-    let written = job.with_film(|film| order.picture.write(film, order.label));
+fn finish(order: &Order, label: &Label, job: &Job) -> Result<(), Failure> {
+    let written = job.with_film(|film| order.picture.write(film, label));
     let Some(path) = job.checkpoint_path() else { return written };
     let path = path.display();
     let Err(failure) = written else {
         if let Err(error) = job.remove_checkpoint() {
-            streams::note(&format!("warning: {path}: not deleted ({error})"));
+            order.warnings.add(format!("{path}: not deleted ({error})"));
         }
         return Ok(());
     };

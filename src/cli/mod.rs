@@ -5,6 +5,7 @@ mod compare;
 mod completions;
 mod failure;
 mod finished;
+mod goal;
 mod inspect;
 mod inspect_scene;
 mod job;
@@ -24,6 +25,7 @@ mod study;
 mod target;
 mod threads;
 mod view;
+mod warnings;
 mod watch;
 
 use std::process::ExitCode;

@@ -167,6 +167,7 @@ pub(crate) fn label(
         part,
         share: share.filter(|_| part.is_some()),
         missing: 0,
+        warning: None,
     }
 }
 

@@ -12,6 +12,7 @@ use whitted::checkpoint::Job;
 use whitted::render::Progress;
 
 use super::preview::Terminal;
+use super::warnings::Warnings;
 
 /// How often a signal is looked for.
 const WATCH: Duration = Duration::from_millis(100);
@@ -75,6 +76,7 @@ pub(crate) struct Watcher<'a> {
     pub(crate) stopping: &'a str,
     /// Tells the user.
     pub(crate) note: &'a (dyn Fn(&str) + Sync),
+    pub(crate) warnings: &'a Warnings,
     /// Tells how far it is, where nothing new has told that for long.
     pub(crate) tick: &'a (dyn Fn() + Sync),
 }
@@ -103,7 +105,7 @@ impl Watcher<'_> {
                 if let Err(error) = &done
                     && !has_failed
                 {
-                    (self.note)(&format!("warning: no checkpoint for now: {error}"));
+                    self.warnings.add(format!("no checkpoint for now: {error}"));
                 }
                 has_failed = done.is_err();
             }

@@ -189,6 +189,7 @@ mod tests {
             part: Some(Tile { x0: 3, y0: 5, x1: 40, y1: 46 }),
             share: None,
             missing,
+            warning: None,
         }
     }
 

@@ -23,6 +23,8 @@ pub struct Label {
     pub share: Option<Share>,
     /// How many pixels of the part are not rendered yet.
     pub missing: u64,
+    /// What is wrong with the picture although all of it is rendered: it missed its goal.
+    pub warning: Option<String>,
 }
 
 /// One of equal shares of a picture.
@@ -41,7 +43,7 @@ impl fmt::Display for Share {
 }
 
 /// The names under which a label stands in a file, in their order there.
-const NAMES: [&str; 6] = ["Software", "Scene", "Options", "Part", "Tile", "Missing"];
+const NAMES: [&str; 7] = ["Software", "Scene", "Options", "Part", "Tile", "Missing", "Warning"];
 
 impl Label {
     /// The program and version of this build.
@@ -72,6 +74,7 @@ impl Label {
             part,
             self.share.map(|share| share.to_string()),
             (self.missing > 0).then(|| self.missing.to_string()),
+            self.warning.clone(),
         ];
         NAMES.into_iter().zip(values).filter_map(|(name, value)| Some((name, value?))).collect()
     }
@@ -84,7 +87,7 @@ impl Label {
                 found[place] = Some(value);
             }
         }
-        let [software, scene, options, part, share, missing] = found;
+        let [software, scene, options, part, share, missing, warning] = found;
         let (size, options) = options?.strip_prefix("size=")?.split_once(' ')?;
         let (width, height) = size.split_once('x')?;
         let size = [width.parse().ok()?, height.parse().ok()?];
@@ -101,7 +104,8 @@ impl Label {
         };
         let missing = missing.map_or(Some(0), |text| text.parse().ok())?;
         let (software, scene, options) = (software?.into(), scene?.into(), options.into());
-        Some(Self { software, scene, size, options, part, share, missing })
+        let warning = warning.map(str::to_owned);
+        Some(Self { software, scene, size, options, part, share, missing, warning })
     }
 
     /// In what `self` and `other`, which a file has, are of different pictures; empty if they are of one.
@@ -163,6 +167,7 @@ mod tests {
             part: Some(Tile { x0: 8, y0: 0, x1: 16, y1: 48 }),
             share: Some(Share { index: 2, of: 8 }),
             missing: 7,
+            warning: Some("--max-error 1 is not reached: 2".to_owned()),
         }
     }
 
@@ -175,7 +180,7 @@ mod tests {
     fn labels_read_back_as_they_are_written() {
         assert_eq!(read(&label()), Some(label()));
         assert_eq!(read(&label().whole()), Some(label().whole()));
-        assert_eq!(label().whole().entries().len(), 3);
+        assert_eq!(label().whole().entries().len(), 4);
         assert_eq!(label().whole().place(), Tile { x0: 0, y0: 0, x1: 64, y1: 48 });
     }
 

@@ -120,7 +120,7 @@ pub fn read_label(file: File) -> io::Result<Option<Label>> {
 pub fn merge(parts: &[PathBuf], output: &OutputFile) -> Result<[u32; 2], MergeError> {
     let mut parts = parts.iter().map(|path| look_at(path)).collect::<Result<Vec<_>, _>>()?;
     let Some(first) = parts.first() else { return Err(MergeError::NoParts) };
-    let label = first.label.whole();
+    let mut label = first.label.whole();
     for part in &parts {
         let what = first.label.differences(&part.label);
         if !what.is_empty() {
@@ -135,6 +135,7 @@ pub fn merge(parts: &[PathBuf], output: &OutputFile) -> Result<[u32; 2], MergeEr
     }
     parts.sort_by_key(|part| (part.place.y0, part.place.x0));
     check_cover(&parts, label.size)?;
+    label.warning = parts.iter().find_map(|part| part.label.warning.clone());
     write(&parts, &label, output)?;
     Ok(label.size)
 }

@@ -52,6 +52,11 @@ pub struct Account {
 }
 
 impl Account {
+    /// The estimated error of so many pixels: root mean square of all channels, in levels of 255.
+    pub fn rmse(&self, pixels: usize) -> f64 {
+        (self.squared_error / pixels.max(1) as f64).sqrt()
+    }
+
     /// The sum, in the order given.
     pub fn sum<'a>(accounts: impl IntoIterator<Item = &'a Self>) -> Self {
         accounts.into_iter().fold(Self::default(), |sum, one| Self {

@@ -137,9 +137,8 @@ impl Rendering {
         effort: &Effort,
     ) -> Self {
         let sum = Account::sum(accounts);
-        let pixels = film.pixels().len().max(1) as f64;
         Self {
-            estimated_rmse: Some((sum.squared_error / pixels).sqrt()),
+            estimated_rmse: Some(sum.rmse(film.pixels().len())),
             outcome: Outcome { unsettled: sum.unsettled as usize, ..outcome },
             rays: sum.rays,
             threads: effort.threads,

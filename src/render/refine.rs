@@ -156,8 +156,7 @@ impl Own {
     fn rmse(&self) -> f64 {
         let finished = || self.accounts.iter().flatten();
         let pixels: usize = finished().map(|(_, pixels)| pixels).sum();
-        let sum = Account::sum(finished().map(|(account, _)| account));
-        (sum.squared_error / pixels.max(1) as f64).sqrt()
+        Account::sum(finished().map(|(account, _)| account)).rmse(pixels)
     }
 }
 

@@ -65,7 +65,7 @@ fn a_time_limit_ends_in_a_picture() {
     assert!(said(&output).contains("warning: --time-limit 0.000001 is too short"));
     assert!(
         said(&output).contains(" s of loading, before ")
-            && said(&output).contains(" s of writing;")
+            && said(&output).contains(" s of writing)\n")
     );
     assert_picture(&read(folder.path(), "assignment.png"), 64, 48);
     let output = run(folder.path(), &["render", "--size", "160x120", "--time-limit", "0.3"]);

@@ -27,6 +27,7 @@ pub(crate) fn label(scene: &Scene, text: &str) -> Label {
         part: None,
         share: None,
         missing: 0,
+        warning: None,
     }
 }
 

@@ -11,6 +11,7 @@ mod parts;
 mod program;
 #[cfg(unix)]
 mod stop;
+mod strict;
 mod tell;
 
 use std::process::Output;

@@ -89,6 +89,7 @@ fn part_of(at: &Path, name: &str, software: &str, missing: u64) {
         part: Some(Tile { x0: 0, y0: 0, x1: 8, y1: 2 }),
         share: None,
         missing,
+        warning: None,
     };
     let mut file = Cursor::new(Vec::new());
     write_png(&Film::new(8, 2), Some(&label), &mut file).expect("memory");

@@ -101,7 +101,7 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "RULES", value_enum, default_value_t, help_heading = "Quality")]
     pub(crate) rules: Rules,
 
-    /// Treat warnings as errors
+    /// Treat warnings as errors: those before the render end the program, the others once the picture is written
     #[arg(long, help_heading = "Messages")]
     pub(crate) strict: bool,
 

@@ -5,8 +5,8 @@ mod terminal;
 pub(crate) use terminal::Terminal;
 
 use super::args::RenderArgs;
-use super::streams;
 use super::view::PreviewWindow;
+use super::warnings::Warnings;
 
 /// Where the picture is shown while it is rendered.
 pub(crate) enum Preview {
@@ -20,7 +20,7 @@ pub(crate) enum Preview {
 
 impl Preview {
     /// A window if there is a display for it, else the terminal if it can show pictures, if a preview is wanted.
-    pub(crate) fn open(args: &RenderArgs) -> Self {
+    pub(crate) fn open(args: &RenderArgs, warnings: &Warnings) -> Self {
         if !args.preview {
             return Self::None;
         }
@@ -31,8 +31,8 @@ impl Preview {
             return Self::Terminal(terminal);
         }
         let place = if cfg!(feature = "view") { "no display, and " } else { "" };
-        streams::note(&format!(
-            "warning: --preview: there is {place}no terminal on standard error that shows pictures; rendering without it"
+        warnings.add(format!(
+            "--preview: there is {place}no terminal on standard error that shows pictures; rendering without it"
         ));
         Self::None
     }

@@ -23,7 +23,7 @@ pub(crate) use preview::PreviewWindow;
 use super::args::ViewArgs;
 use super::failure::Failure;
 #[cfg(not(feature = "view"))]
-use super::watch::Course;
+use super::{warnings::Warnings, watch::Course};
 #[cfg(not(feature = "view"))]
 use whitted::checkpoint::Job;
 
@@ -53,7 +53,7 @@ impl PreviewWindow {
         None
     }
 
-    pub(crate) fn show(&mut self, _: &Job, _: &Course) {
+    pub(crate) fn show(&mut self, _: &Job, _: &Course, _: &Warnings) {
         match *self {}
     }
 }

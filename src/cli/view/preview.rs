@@ -10,7 +10,7 @@ use winit::platform::run_on_demand::EventLoopExtRunOnDemand;
 use winit::window::WindowId;
 
 use super::super::failure::Failure;
-use super::super::streams;
+use super::super::warnings::Warnings;
 use super::super::watch::Course;
 use super::controls::{self, Action};
 use super::pane::Pane;
@@ -35,7 +35,7 @@ impl PreviewWindow {
 
     /// Shows the picture until its render has ended, or the user closes the window; the render goes on without it. To
     /// be called from the thread that the program began with.
-    pub(crate) fn show(&mut self, job: &Job, course: &Course) {
+    pub(crate) fn show(&mut self, job: &Job, course: &Course, warnings: &Warnings) {
         if self.is_closed {
             return;
         }
@@ -50,7 +50,7 @@ impl PreviewWindow {
         let done = self.events.run_app_on_demand(&mut shown);
         let failure = shown.failure.map(|failure| failure.to_string());
         if let Some(reason) = failure.or(done.err().map(|error| error.to_string())) {
-            streams::note(&format!("warning: --preview: {reason}; rendering without it"));
+            warnings.add(format!("--preview: {reason}; rendering without it"));
             self.is_closed = true;
         }
         self.is_closed |= shown.is_closed;

@@ -202,6 +202,7 @@ impl Viewer {
             part: None,
             share: None,
             missing: 0,
+            warning: None,
         }
     }
 }
