@@ -10,6 +10,8 @@ mod parts;
 #[path = "../program/mod.rs"]
 mod program;
 #[cfg(unix)]
+mod signals;
+#[cfg(unix)]
 mod stop;
 mod strict;
 mod tell;

@@ -29,7 +29,7 @@ pub(crate) fn signal(child: &Child, name: &str) {
 }
 
 /// Waits until a child to which that was signalled has stopped, or ended.
-fn wait_until_it_sleeps(child: &Child) {
+pub(crate) fn wait_until_it_sleeps(child: &Child) {
     let id = child.id().to_string();
     loop {
         let told =
@@ -207,40 +207,6 @@ fn a_checkpoint_of_other_options_is_refused() {
     done(&output);
     assert!(said(&output).contains("--resume goes on from it"), "{}", said(&output));
     assert!(read(at, "a.png.checkpoint.old") == before);
-}
-
-/// One block of 16 x 16 pixels with a million rays each: it does not end before the second signal.
-#[test]
-fn a_second_signal_stops_at_once_and_leaves_old_files_whole() {
-    let folder = folder();
-    let at = folder.path();
-    fs::write(at.join("a.png"), "old").expect("written");
-    let endless = ["render", "--size", "16x16", "--aa", "sobol:1048576", "-o", "a.png"];
-    let mut child = whitted(at, &endless).stderr(Stdio::piped()).spawn().expect("it runs");
-    std::thread::sleep(Duration::from_millis(700));
-    signal(&child, "-INT");
-    let mut told = [0; 9];
-    let mut pipe = child.stderr.take().expect("piped");
-    pipe.read_exact(&mut told).expect("it says something");
-    assert_eq!(&told, b"stopping:");
-    let started = Instant::now();
-    signal(&child, "-TERM");
-    assert_eq!(child.wait().expect("it ends").code(), Some(143));
-    assert!(started.elapsed() < Duration::from_secs(2), "{:?}", started.elapsed());
-    assert_eq!(read(at, "a.png"), b"old");
-    assert_eq!(names_in(at), ["a.png"]);
-}
-
-/// While the scene is read there is nothing to keep.
-#[test]
-fn a_signal_before_the_render_ends_the_program_with_its_code() {
-    let folder = folder();
-    let scene = ["render", "spheres", "--objects", "3000000", "--size", "8x8"];
-    let child = whitted(folder.path(), &scene).stderr(Stdio::null()).spawn().expect("it runs");
-    std::thread::sleep(Duration::from_millis(300));
-    signal(&child, "-INT");
-    assert_eq!(end(child).status.code(), Some(130));
-    assert_eq!(names_in(folder.path()), [""; 0]);
 }
 
 /// What is written is better than one ray in each pixel, says that it is not what was asked for, and goes on.
