@@ -44,6 +44,10 @@ pub(super) fn centers<S: Sampler + Send>(crew: &Crew<S>, area: &Area) -> Picture
     }
 }
 
+/// The squared error of a ray at any place of its pixel, as a multiple of that of a ray through the centre: measured at
+/// edges.
+const ANY_PLACE: f64 = 1.75;
+
 /// What is kept of a pixel of a grid until its neighbours are known.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cell {
@@ -87,7 +91,8 @@ pub(super) fn sequence<S: Sampler + Send>(
 }
 
 /// `count` rays through each pixel at the places that `pixel_places` adds to a list. `judge` tells the squared error of
-/// their mean from their display levels; where they are alike, `unseen` of the contrast to the neighbours is added.
+/// their mean from their display levels; where they are alike, `unseen` of the contrast to the neighbours is added. A
+/// single one says nothing of its error by itself, but its neighbours do.
 fn even<S: Sampler + Send>(
     crew: &Crew<S>,
     area: &Area,
@@ -138,6 +143,10 @@ fn even<S: Sampler + Send>(
     let cells = cells.into_inner().unwrap_or_else(PoisonError::into_inner);
     let squared_error = sum_of_tiles(area, |tile| {
         let window = Window::new(tile, &cells, |cell| (cell.color, cell.signature));
+        if count == 1 {
+            let errors = window.center_errors();
+            return ANY_PLACE * errors.into_iter().map(f64::from).sum::<f64>();
+        }
         let hidden = window.suspects().into_iter().map(|(place, look)| {
             let (x, y) = tile.pixel_at(place);
             if cells.at(x, y).alike { unseen * look.contrast } else { 0.0 }

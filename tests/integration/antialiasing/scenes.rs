@@ -92,8 +92,8 @@ fn triangles() -> Scene {
     ))
 }
 
-/// Oracle: 256 rays in each pixel at places that none of the modes use. Half of the truth is the least that may be said, and
-/// within one and a half times is what most must be.
+/// Oracle: 256 rays in each pixel, at places of which the modes use sixteen at most. Half of the truth is the least that may be
+/// said, twice the most, and within one and a half times is what most must be.
 #[test]
 fn what_is_said_of_the_error_is_true() {
     let scenes = [
@@ -102,24 +102,35 @@ fn what_is_said_of_the_error_is_true() {
         ("texture", texture()),
         ("triangles", triangles()),
     ];
-    let (mut all, mut close, mut low) = (0, 0, Vec::new());
+    let (mut all, mut close, mut far) = (0, 0, Vec::new());
     let mut report = String::new();
     for (name, scene) in scenes {
         let truth = rendered(&scene, mode("sobol:256")).film;
-        for aa in ["none", "grid:2", "grid:3", "grid:4", "adaptive:16", "adaptive:4", "adaptive:1"]
-        {
+        for aa in [
+            "none",
+            "grid:2",
+            "grid:3",
+            "grid:4",
+            "adaptive:16",
+            "adaptive:4",
+            "adaptive:1",
+            "sobol:1",
+            "sobol:2",
+            "sobol:4",
+            "sobol:16",
+        ] {
             let rendering = rendered(&scene, mode(aa));
             let error = rmse(&rendering.film, &truth);
             let ratio = rendering.estimated_rmse.expect("an estimate") / error;
             let _ = writeln!(report, "{name:12} {aa:12} {error:7.3} {ratio:6.2}");
             all += 1;
             close += usize::from((1.0 / 1.5..=1.5).contains(&ratio));
-            if ratio < 0.5 {
-                low.push((name, aa, ratio));
+            if !(0.5..=2.0).contains(&ratio) {
+                far.push((name, aa, ratio));
             }
         }
     }
-    assert!(low.is_empty(), "{low:?}\n{report}");
+    assert!(far.is_empty(), "{far:?}\n{report}");
     assert!(close * 10 >= all * 9, "{close} of {all}\n{report}");
 }
 
