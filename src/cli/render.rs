@@ -192,7 +192,7 @@ fn summary(
 ) -> String {
     let mode = match rendering.outcome {
         Outcome { is_used_up: true, .. } => {
-            format!("with all rays that {mode} allows, before the time was up")
+            format!("with all rays worth casting that {mode} allows, before the time was up")
         }
         Outcome { cut: true, .. } => "adaptive until the time was up".to_owned(),
         Outcome { per_ray: Some(per_ray), .. } => {

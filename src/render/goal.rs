@@ -159,7 +159,7 @@ impl Unfinished {
             watch.show(&self.adaptive);
             crew.meter.reach(1.0 - left.as_secs_f64() / whole);
             if left < SHORTEST || !self.step_within(crew, left, end, watch) {
-                let is_used_up = left >= SHORTEST && !self.adaptive.can_improve();
+                let is_used_up = left >= SHORTEST && Instant::now() < end;
                 return (self.adaptive, Outcome { cut: true, is_used_up, ..Outcome::default() });
             }
         }

@@ -93,7 +93,7 @@ pub struct Outcome {
     pub late: Option<Duration>,
     /// Whether the clock decided what was refined.
     pub cut: bool,
-    /// Whether there was time left when no pixel could become better.
+    /// Whether there was time left when more rays, of those that pixels may get, were worth nothing to any pixel.
     pub is_used_up: bool,
     /// Whether it was stopped before its goal, and only kept to go on from.
     pub is_stopped: bool,

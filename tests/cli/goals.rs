@@ -75,7 +75,14 @@ fn a_time_limit_ends_in_a_picture() {
     let few = ["render", "--size", "12x8", "--time-limit", "3600", "--aa", "adaptive:0,16"];
     let output = run(folder.path(), &few);
     done(&output);
-    assert!(said(&output).contains("with all rays that adaptive:0,16 allows, before the time"));
+    assert!(
+        said(&output).contains("with all rays worth casting that adaptive:0,16 allows, before")
+    );
+    // Many, but none that is worth it.
+    let enough = ["render", "--size", "6x4", "--time-limit", "3600"];
+    let output = run(folder.path(), &enough);
+    done(&output);
+    assert!(said(&output).contains("with all rays worth casting that adaptive:0,"));
 }
 
 /// A goal that is missed is a warning to people, a line and a statistic to programs, and an error under `--strict`; the picture is

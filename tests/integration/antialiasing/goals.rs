@@ -125,9 +125,21 @@ fn a_time_limit_gives_a_picture_however_short() {
     let end = Instant::now() + Duration::from_secs(3600);
     let picture = picture_of(&rings, 64, "adaptive:0,64", Goal::Until(end));
     assert!(picture.outcome.cut && picture.outcome.late.is_none());
+    assert!(picture.outcome.is_used_up);
     assert_eq!(picture.samples.iter().max(), Some(&64));
     let most = picture_of(&rings, 64, "adaptive:0,64", Goal::Mode);
     assert!(picture.estimated_rmse() < 1.5 * most.estimated_rmse());
+}
+
+/// The edge is too faint for an 8-bit picture long before its pixels have all the rays that they may get.
+#[test]
+fn time_is_left_where_rays_are_worth_nothing_any_more() {
+    let faint = |p: DVec2| if p.x < 3.3 { (0.5, 1) } else { (0.50001, 2) };
+    let end = Instant::now() + Duration::from_secs(3600);
+    let picture = picture_of(&faint, 8, "adaptive:0,1048576", Goal::Until(end));
+    assert!(picture.outcome.is_used_up && picture.outcome.cut);
+    assert!(picture.samples.iter().all(|&rays| rays < 1_048_576));
+    assert!(picture.estimated_rmse() > 0.0);
 }
 
 /// Keeps every look at a picture on its way, and its end.
