@@ -40,10 +40,11 @@ impl Reference {
         if let Some(reference) = Self::read(&path, size) {
             return Ok(reference);
         }
+        let file = WholeFile::prepare(path)?;
         let aa = AntiAliasing::Sequence { count: rays };
         let options = RenderOptions { size: Some(size), aa, threads, ..RenderOptions::default() };
         let reference = Self::of_film(&render(scene, &options, &|_| ())?.film);
-        WholeFile::prepare(path)?.commit(|writer| {
+        file.commit(|writer| {
             reference
                 .pixels
                 .iter()
@@ -99,5 +100,23 @@ impl Reference {
 
     fn differences(&self, film: &Film) -> impl Iterator<Item = Vec3> {
         film.pixels().iter().zip(&self.pixels).map(|(a, b)| levels(*a) - levels(*b))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::load_builtin;
+
+    /// Oracle: a picture without pixels cannot be rendered, but that is not what is found first.
+    #[test]
+    fn a_file_that_cannot_be_written_is_found_before_anything_is_rendered() {
+        let scene = load_builtin("assignment").expect("a scene");
+        let folder = tempfile::tempdir().expect("a folder");
+        let reference = |folder: &Path| Reference::of(&scene, "a", [0, 0], 4, None, folder);
+        let render = reference(folder.path());
+        assert!(matches!(render, Err(StudyError::Render(_))), "{render:?}");
+        let file = reference(&folder.path().join("none"));
+        assert!(matches!(file, Err(StudyError::File(_))), "{file:?}");
     }
 }
