@@ -123,6 +123,14 @@ pub(super) fn parse_objects(text: &str) -> Result<u32, String> {
     }
 }
 
+/// The name of a scene to study, in which a number of spheres is one that there may be.
+pub(super) fn parse_studied(text: &str) -> Result<String, String> {
+    match text.strip_prefix("spheres:").map(parse_objects) {
+        Some(Err(advice)) => Err(format!("{advice} after `spheres:`")),
+        _ => Ok(text.to_owned()),
+    }
+}
+
 pub(super) fn parse_repeats(text: &str) -> Result<u32, String> {
     match whole(text) {
         Some(repeats @ 1..=1000) => Ok(repeats),

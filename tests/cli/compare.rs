@@ -87,6 +87,10 @@ fn a_study_that_cannot_be_written_is_refused_at_once() {
     fs::write(folder.path().join("plain"), "kept").expect("written");
     assert_refused(&run(folder.path(), &["study", "--quick", "-o", "plain"]), 1, &["plain"]);
     assert_refused(&run(folder.path(), &["study", "nowhere"]), 2, &["nowhere", "assignment"]);
+    for name in ["spheres:1e3", "spheres:99999999999", "spheres:0", "spheres:"] {
+        let advice = "a whole number from 1 to 50000000 after `spheres:`";
+        assert_refused(&run(folder.path(), &["study", name]), 2, &[name, advice]);
+    }
     assert_eq!(names_in(folder.path()), ["plain"]);
     for name in
         ["study.csv", "index.html", "depth.svg", "assignment-rays.png", "error-assignment.png"]

@@ -15,7 +15,7 @@ pub(crate) use self::scene::SceneArgs;
 #[cfg(feature = "view")]
 pub(crate) use self::view::CONTROLS;
 pub(crate) use self::view::ViewArgs;
-use super::parse::{parse_error, parse_repeats, parse_size, parse_threads};
+use super::parse::{parse_error, parse_repeats, parse_size, parse_studied, parse_threads};
 
 /// The first screen: what people start with, then all there is.
 const FIRST_STEPS: &str = "\
@@ -191,6 +191,7 @@ Examples:
   whitted study assignment -o results --repeats 9")]
 pub(crate) struct StudyArgs {
     /// Scenes to study: built-in ones, spheres:N, or files [default: assignment and spheres:10000]
+    #[arg(value_parser = parse_studied)]
     pub(crate) scenes: Vec<String>,
 
     /// Folder for study.csv, study.json, study.md, index.html, plots and pictures
