@@ -54,10 +54,12 @@ fn edges_at_any_angle_have_their_area() {
         );
         assert!(four.bias.abs() < 1e-3 && one.bias.abs() < 4e-4, "{degrees}: {four:?} {one:?}");
         assert!(four.rays < 3.0 && one.rays < 6.0, "{degrees}: {four:?} {one:?}");
-        worst_ratio = (worst_ratio.0.min(four.ratio), worst_ratio.1.max(four.ratio));
+        for Found { ratio, .. } in [none, four, one] {
+            worst_ratio = (worst_ratio.0.min(ratio), worst_ratio.1.max(ratio));
+        }
     }
     // One line has one phase if it is upright; a picture of many edges is in `scenes`.
-    assert!(worst_ratio.0 > 0.4 && worst_ratio.1 < 4.0, "{worst_ratio:?}");
+    assert!(worst_ratio.0 > 0.5 && worst_ratio.1 < 2.0, "{worst_ratio:?}");
 }
 
 /// A disc: the height of its part in a column is known, and columns are summed up finely.
