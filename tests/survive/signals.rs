@@ -27,8 +27,8 @@ fn signals_that_come_together_are_one() {
     assert!(read(at, "a.png") == expected);
 }
 
-/// One block of 16 x 16 pixels with a million rays each: it does not end before a signal that ends it at once, which one
-/// does that comes long enough after the first.
+/// One block of 16 x 16 pixels with a million rays each: it does not end before a signal comes that is late enough to
+/// end it at once.
 #[test]
 fn a_later_signal_stops_at_once_and_leaves_old_files_whole() {
     let folder = folder();
