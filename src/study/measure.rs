@@ -113,14 +113,6 @@ impl Run<'_> {
         let mut times = vec![Vec::new(); modes.len()];
         let first = self.study.rows.len();
         for round in 1..=rounds {
-            // The first of a round is not to pay for what the longest, which came before it, left of caches and memory.
-            if let Some((mode, depth)) = modes.first() {
-                render(
-                    setting.scene,
-                    &mode.options(setting.size, *depth, self.plan.threads),
-                    &|_| (),
-                )?;
-            }
             for ((mode, depth), seconds) in modes.iter().zip(&mut times) {
                 let name = mode.name();
                 let what =
