@@ -37,18 +37,6 @@ impl Tracer<'_> {
                 let (rays, with_uv) = (&self.batch.met, material.texture.needs_uv());
                 shape.surface_lanes(rays, same, with_uv, &mut self.lit.surfaces)
             };
-        if together && let (Shape::Sphere(sphere), true) = (shape, goes_on) {
-            for k in lanes(same) {
-                let surface = sphere.surface_of_lane(&self.lit.surfaces, k);
-                self.go_on(
-                    k,
-                    self.batch.met.dir.get(k),
-                    &self.batch.hits.get(k),
-                    &surface,
-                    material,
-                );
-            }
-        }
         if !together {
             for k in lanes(same) {
                 let hit = self.batch.hits.get(k);
@@ -62,6 +50,12 @@ impl Tracer<'_> {
                 if goes_on {
                     self.go_on(k, ray.dir, &hit, &surface, material);
                 }
+            }
+        } else if let (Shape::Sphere(sphere), true) = (shape, goes_on) {
+            for k in lanes(same) {
+                let (hit, dir) = (self.batch.hits.get(k), self.batch.met.dir.get(k));
+                let surface = sphere.surface_of_lane(&self.lit.surfaces, k);
+                self.go_on(k, dir, &hit, &surface, material);
             }
         }
         self.lit.take(same, &self.batch, material);

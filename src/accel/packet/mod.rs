@@ -3,8 +3,9 @@
 //! The nodes are tested against their [`Beam`], once for all. Of a leaf of triangles, which are [seen](eye) from the
 //! common point, each is tested against the rays, eight at a time; of other leaves the box is. What is alone in a leaf,
 //! and each of the few spheres of a leaf that the beam may meet, is then tried by all of these rays in a loop over the
-//! lanes, which vectors can do; many spheres are by each ray that may meet them. What decides is the shapes' own arithmetic, so the answers are, to the bit, those of
-//! single rays; that a lane tries what it need not have tried makes no difference.
+//! lanes, which vectors can do; many spheres are by each ray that may meet them. What decides is the shapes' own
+//! arithmetic, so the answers are, to the bit, those of single rays; that a lane tries what it need not have tried makes
+//! no difference.
 
 mod blocked;
 mod boxes;
