@@ -1,10 +1,14 @@
-//! What no geometry tells: specks seen in a mirror are found by chance.
+//! What no geometry tells: specks seen in a mirror and small highlights are found by chance.
 
 use std::{f64::consts::PI, fmt::Write};
 
 use whitted::{film::Film, render::RenderOptions, scene::Scene};
 
-use super::{super::support, mode};
+use super::{
+    super::support,
+    mode,
+    scenes::{rendered, rmse},
+};
 
 /// Pixels either way, and those of each square with a speck in its middle.
 const SIDE: u32 = 160;
@@ -90,5 +94,42 @@ fn specks_in_a_mirror_are_found_by_chance() {
                 assert!((share - expected).abs() <= chance + overlap, "{radius} {name}: {share}");
             }
         }
+    }
+}
+
+/// Shiny balls whose highlights are far narrower than a pixel: what one ray in each pixel says of its error is true. What
+/// other modes say is printed.
+///
+/// Oracle: a converged picture.
+#[test]
+fn one_ray_knows_of_small_highlights() {
+    let mut objects = String::new();
+    for k in 0..60_u32 {
+        // Evenly spread, by the golden ratio.
+        let [x, y] = [f64::from(k % 10), f64::from(k / 10)];
+        let [x, y, z] = [x - 4.5 + 0.618 * y % 1.0, 0.9 * y - 1.3 + 0.618 * x % 0.6, -0.8 * y];
+        let shape = format!("{{ center = [{x}, {y}, {z}], radius = 0.4 }}");
+        let _ = writeln!(objects, "{{ material = \"shiny\", shape.sphere = {shape} }},");
+    }
+    let scene = support::scene(&format!(
+        r"resolution = [72, 72]
+        depth = 3
+        background = [0.5, 0.6, 0.8]
+        camera = {{ eye = [0, 2, 14], look_at = [0, 1, 0], up = [0, 1, 0], vertical_fov = 40 }}
+        light = [{{ position = [8, 12, 10], intensity = 0.5 }}, {{ position = [-9, 10, 6], intensity = 0.5 }}]
+        material.shiny = {{ color = [0.05, 0.05, 0.05], ambient = 0.1, diffuse = 0.2, specular = 1, shininess = 400 }}
+        object = [{objects}]"
+    ));
+    let reference = rendered(&scene, mode("sobol:1024")).film;
+    let ratio = |aa: &str| {
+        let rendering = rendered(&scene, mode(aa));
+        let error = rmse(&rendering.film, &reference);
+        let ratio = rendering.estimated_rmse.expect("an estimate") / error;
+        println!("highlights: {aa:11} is off by {error:6.2}, and says {ratio:.2} of that");
+        ratio
+    };
+    assert!((1.0 / 1.5..1.5).contains(&ratio("none")));
+    for aa in ["grid:2", "grid:4", "adaptive:8", "adaptive:4", "adaptive:1"] {
+        ratio(aa);
     }
 }
