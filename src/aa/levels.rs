@@ -50,6 +50,11 @@ pub fn squared_distance(a: Vec3, b: Vec3) -> f32 {
     (a - b).length_squared() / 3.0
 }
 
+/// The squared error in levels of a colour whose light is off by so much, one way or the other.
+pub fn error_of_light(color: Rgb, off: Rgb) -> f32 {
+    squared_distance(levels(color + off), levels(color - off)) / 4.0
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

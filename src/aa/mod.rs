@@ -1,6 +1,7 @@
 //! Anti-aliasing: which places of a pixel are asked for their colour, what the pixel becomes, and how far off it is.
 
 pub mod estimate;
+pub mod kinds;
 pub mod levels;
 pub mod refined;
 pub mod sobol;

@@ -4,7 +4,7 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::estimate::{BUSY, Spread, all_alike, quarters_share, sequence_share, sequence_unseen};
-use super::levels::{levels, squared_distance};
+use super::levels::{error_of_light, levels, squared_distance};
 use crate::color::Rgb;
 
 /// The most kinds of things in a pixel with something thin and little else.
@@ -194,8 +194,7 @@ impl Refined {
         let mean = sum / count;
         let variance = (squares - sum * mean).max(Rgb::ZERO) / (count - 1.0);
         let off = (variance * self.spread.share(self.stage.share, BUSY)).map(f32::sqrt);
-        let color = self.color();
-        Some(squared_distance(levels(color + off), levels(color - off)) / 4.0)
+        Some(error_of_light(self.color(), off))
     }
 
     /// The error with that of what may hide between the samples: little if they all met the same; much if they met different things

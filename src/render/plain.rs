@@ -15,11 +15,12 @@ use crate::{
     aa::{
         Sample,
         estimate::{
-            GRID_OF_FOUR, Spread, bare_sequence_share, grid_unseen, interleaved, interleaved_share,
+            GRID_OF_FOUR, Parts, Spread, bare_sequence_share, grid_unseen, interleaved_share,
             sequence_unseen,
         },
         grid_places,
-        levels::levels,
+        kinds::Kinds,
+        levels::{error_of_light, levels},
         sobol::Sequence,
     },
     color::Rgb,
@@ -56,22 +57,27 @@ struct Cell {
     /// The signature, if all samples share it; else a number of the pixel's own.
     signature: u32,
     alike: bool,
+    kinds: Kinds,
+    /// The squared error if the others were met by chance.
+    by_chance: f32,
 }
 
 /// A grid of `side` × `side` rays through each pixel.
 pub(super) fn grid<S: Sampler + Send>(crew: &Crew<S>, area: &Area, side: u32) -> Picture {
+    let parts = Parts::OfGrid(side as usize);
     let places = |x: i64, y: i64, places: &mut Vec<DVec2>| {
         places.extend(grid_places(DVec2::new(x as f64, y as f64), side));
     };
     let judge = |levels: &[Vec3], spread: &Spread| {
         // Without any edge it is at most half of what it is at one.
         let part = if spread.kinds() == 1 { 0.5 } else { 1.0 };
-        part * match side {
-            2 => spread.error(GRID_OF_FOUR, 0.0),
-            _ => interleaved_share(side) * interleaved(levels, side as usize),
+        if side == 2 {
+            return part * spread.error(GRID_OF_FOUR, 0.0);
         }
+        let variance = parts.variance(levels.iter().copied());
+        part * interleaved_share(side) * variance.element_sum() / 3.0
     };
-    even(crew, area, side * side, places, judge, grid_unseen(side))
+    even(crew, area, (side * side, parts), places, judge, grid_unseen(side))
 }
 
 /// `count` rays of a sequence through each pixel of a picture `width` pixels wide.
@@ -87,7 +93,8 @@ pub(super) fn sequence<S: Sampler + Send>(
         places.extend((0..count).map(|point| corner + sequence.place(point)));
     };
     let judge = |_: &[Vec3], spread: &Spread| spread.error(bare_sequence_share(count), 0.0);
-    even(crew, area, count, places, judge, sequence_unseen(count))
+    let parts = Parts::OfSequence(count as usize);
+    even(crew, area, (count, parts), places, judge, sequence_unseen(count))
 }
 
 /// `count` rays through each pixel at the places that `pixel_places` adds to a list. `judge` tells the squared error of
@@ -96,7 +103,7 @@ pub(super) fn sequence<S: Sampler + Send>(
 fn even<S: Sampler + Send>(
     crew: &Crew<S>,
     area: &Area,
-    count: u32,
+    (count, parts): (u32, Parts),
     pixel_places: impl Fn(i64, i64, &mut Vec<DVec2>) + Sync,
     judge: impl Fn(&[Vec3], &Spread) -> f32 + Sync,
     unseen: f32,
@@ -129,11 +136,21 @@ fn even<S: Sampler + Send>(
                         spread.add(*levels, sample.signature);
                     }
                     let only = spread.only_signature();
+                    let color = sum / count as f32;
+                    let kinds = Kinds::of(samples);
+                    let by_chance = if kinds.has_few_others() {
+                        let variance = parts.variance(samples.iter().map(|sample| sample.color));
+                        error_of_light(color, variance.map(f32::sqrt))
+                    } else {
+                        0.0
+                    };
                     own[tile.place_of(*x, *y)] = Cell {
-                        color: sum / count as f32,
+                        color,
                         error: judge(&seen, &spread),
                         signature: only.unwrap_or((x * 31 + y * 17) as u32),
                         alike: only.is_some(),
+                        kinds,
+                        by_chance,
                     };
                 }
             }
@@ -151,7 +168,15 @@ fn even<S: Sampler + Send>(
             let (x, y) = tile.pixel_at(place);
             if cells.at(x, y).alike { unseen * look.contrast } else { 0.0 }
         });
-        let seen = tile.pixels().map(|(x, y)| cells.at(x, y).error);
+        let seen = tile.pixels().map(|(x, y)| {
+            let cell = cells.at(x, y);
+            let around = (0..9).map(|k| cells.nearest(x + k % 3 - 1, y + k / 3 - 1).kinds);
+            if cell.by_chance > cell.error && cell.kinds.are_small_among(around) {
+                cell.by_chance
+            } else {
+                cell.error
+            }
+        });
         seen.chain(hidden).map(f64::from).sum()
     });
     Picture {

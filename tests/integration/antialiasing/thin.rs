@@ -191,6 +191,26 @@ fn a_wire_that_runs_past_the_eye_is_found() {
     assert_honest("adaptive", &refined, &truth);
 }
 
+/// A fence of wires a tenth of a pixel wide, each of whose pixels is met by one sample of four or two of sixteen: by
+/// chance, which even samples know of. Oracle: 1024 samples in every pixel.
+///
+/// They lean: a wire that is nearly upright passes by whole columns of samples.
+#[test]
+fn even_samples_know_that_they_meet_wires_by_chance() {
+    let wire = |k: u32| {
+        let (x, lean) = (0.4 * f64::from(k) - 8.0, 4.0 + 0.07 * f64::from(k));
+        format!(
+            "cylinder = {{ base = [{x}, -8, 0], top = [{}, 8, 0], radius = 0.0139, ends = \"open\" }}",
+            x + lean
+        )
+    };
+    let scene = white(&(0..30).map(wire).collect::<Vec<String>>());
+    let truth = rendered(&scene, mode("sobol:1024")).film;
+    for aa in ["grid:2", "grid:3", "grid:4", "grid:8", "sobol:4", "sobol:16"] {
+        assert_honest(aa, &rendered(&scene, mode(aa)), &truth);
+    }
+}
+
 /// A board of squares half as wide as a pixel, so that neighbouring centres meet the same colour. Oracle: 1024 samples in every pixel.
 #[test]
 fn cells_between_pixels_are_noticed_in_mirrors_and_behind_glass() {
