@@ -4,10 +4,10 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use glam::DVec2;
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
 use super::{
     Progress,
+    foretold::Foretold,
     plane::{Area, Plane, TILE_SIDE},
 };
 use crate::aa::Sample;
@@ -20,37 +20,14 @@ pub trait Sampler {
     /// other in the picture.
     fn sample(&mut self, places: &[DVec2], samples: &mut Vec<Sample>);
 
-    /// The least number of samples that the adaptive mode gives a pixel, because something is known to be there that
-    /// fewer may miss.
-    fn least_samples(&self, _x: u32, _y: u32) -> Least {
-        Least::default()
+    /// What is known to be in a pixel that few samples may miss; the adaptive mode asks.
+    fn foretold(&self, _x: u32, _y: u32) -> Foretold {
+        Foretold::default()
     }
 
-    /// Whether any pixel has such a least number.
-    fn has_thin(&self) -> bool {
+    /// Whether anything is known to be in any pixel.
+    fn has_foretold(&self) -> bool {
         false
-    }
-}
-
-/// How many samples a pixel gets at least.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Least {
-    /// In any case.
-    pub samples: u32,
-    /// As long as all of them met the same; not fewer.
-    pub if_alike: u32,
-}
-
-impl Least {
-    /// Whether there is such a number.
-    pub(super) fn is_some(self) -> bool {
-        self.samples > 0
-    }
-
-    /// What is needed for both.
-    pub(super) fn max(self, other: Self) -> Self {
-        let samples = self.samples.max(other.samples);
-        Self { samples, if_alike: self.if_alike.max(other.if_alike) }
     }
 }
 

@@ -6,13 +6,14 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    crew::{Crew, Least, Sampler, in_turn, lock},
+    crew::{Crew, Sampler, in_turn, lock},
     demand::Demand,
+    foretold::{Foretold, Least},
     hidden::hidden_error,
     look::{ONE_COLOR, Window, corrected, skips_cells},
     outlook::{Outlook, Worth},
     plane::{Area, Plane, Tiled},
-    round::{Chosen, Pixel, Threshold, is_disputed, is_picked},
+    round::{Chosen, Pixel, Threshold, Unseen, is_disputed, is_picked},
 };
 use crate::{
     aa::{Sample, estimate::Look, refined::Stage},
@@ -58,7 +59,7 @@ impl Known {
         least: Threshold,
     ) {
         let area = *self.pixels.area();
-        let has_thin = (crew.new_sampler)().has_thin();
+        let has_foretold = (crew.new_sampler)().has_foretold();
         let of_one_color = Mutex::new(Vec::new());
         let known = Mutex::new(&mut *self);
         let never = || false;
@@ -67,12 +68,16 @@ impl Known {
             let suspects = window.suspects();
             let mut pixels = pixels_of(tile, &window, &suspects, centers);
             for (pixel, (x, y)) in pixels.iter_mut().zip(tile.pixels()) {
-                if has_thin {
-                    let thin = sampler.least_samples(x as u32, y as u32);
-                    pixel.is_thin = thin.is_some();
-                    pixel.least = pixel.least.max(thin);
+                let (center, mut expected) = (centers.at(x, y), pixel.error);
+                if has_foretold {
+                    let Foretold { least, glint } = sampler.foretold(x as u32, y as u32);
+                    pixel.is_thin = least.is_some();
+                    pixel.least = pixel.least.max(least);
+                    pixel.unseen = Unseen::of(glint, center.color);
+                    pixel.error = pixel.error.max(pixel.unseen.after(0));
+                    expected += pixel.unseen.expected_after(0);
                 }
-                pixel.worth = Worth::of(pixel, pixel.error, stages, centers.at(x, y));
+                pixel.worth = Worth::of(pixel, expected, stages, center);
             }
             let alike = suspects.iter().filter(|(_, look)| look.contrast < ONE_COLOR);
             lock(&of_one_color).extend(alike.map(|(place, _)| tile.pixel_at(*place)));

@@ -4,8 +4,10 @@ mod adaptive;
 mod blocks;
 mod crew;
 mod demand;
+mod foretold;
 mod goal;
 mod hidden;
+mod highlights;
 mod known;
 mod look;
 mod outlook;
@@ -29,7 +31,8 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use thiserror::Error;
 
 pub use blocks::{Account, Block, Sink, blocks};
-pub use crew::{Least, Sampler};
+pub use crew::Sampler;
+pub use foretold::{Foretold, Glint, Least};
 pub use goal::Unfinished;
 pub use picture::{Picture, picture};
 
@@ -247,14 +250,20 @@ pub fn render_blocks(
     let pool = pool(options.threads)?;
     let camera = options.camera.map_or(*scene.camera(), |camera| scene.own_camera(camera));
     let (view, mode) = (camera.view(width, height), (options.aa, options.goal));
-    let thin = is_adaptive.then(|| thin::least_samples(scene, &view, &Area::of(&part))).flatten();
+    let forecast = is_adaptive.then(|| foretold::foretell(scene, &view, &Area::of(&part)));
+    // They cost the adaptive mode a few rays about every highlight.
+    let tells_highlights = match &forecast {
+        Some(forecast) => forecast.has_glints,
+        None => options.aa != AntiAliasing::None,
+    };
+    let foretold = forecast.and_then(|forecast| forecast.pixels);
     let block = |number: usize, place: &Tile, progress: &(dyn Fn(Progress) + Sync)| {
         let rays = Mutex::new(RayCounts::default());
         let new_sampler = || Worker {
-            tracer: Tracer::new(scene, depth),
+            tracer: Tracer::new(scene, depth, tells_highlights),
             view,
             traced: Vec::new(),
-            thin: thin.as_ref(),
+            foretold: foretold.as_ref(),
             counts: &rays,
         };
         let watch = Watch { sink, place, rays: &rays };

@@ -6,13 +6,15 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    crew::{Least, Sampler, Scratch},
+    crew::{Sampler, Scratch},
+    foretold::{Glint, Least},
     outlook::Worth,
     plane::{Plane, Tiled},
 };
 use crate::{
     aa::{
         Sample,
+        levels::{levels, squared_distance},
         refined::{Refined, Stage},
         sobol::{Sequence, hash},
     },
@@ -21,6 +23,11 @@ use crate::{
 
 /// Samples that are taken without looking at the clock.
 const AT_ONCE: usize = 512;
+
+/// How much sooner a highlight shows in a sample than samples tell how bright it is.
+const SOONER: u32 = 8;
+/// The part of the highlights that are neither hidden nor in shadow.
+const VISIBLE: f32 = 0.5;
 
 /// When a pixel gets more rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,6 +65,8 @@ pub(super) struct Pixel {
     pub(super) is_thin: bool,
     /// Samples of the sequence that it gets whatever its error.
     pub(super) least: Least,
+    /// What highlights narrower than it may add unseen.
+    pub(super) unseen: Unseen,
     /// What more rays are worth to it.
     pub(super) worth: Worth,
     pub(super) refined: Option<Box<Refined>>,
@@ -74,6 +83,34 @@ impl Pixel {
         let is_alike = || self.refined.as_ref().is_some_and(|refined| refined.is_alike());
         let points = self.points();
         points < self.least.samples || points < self.least.if_alike && is_alike()
+    }
+}
+
+/// What is in a pixel that its samples may not have met.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(super) struct Unseen {
+    /// The squared error if they met nothing of it.
+    error: f32,
+    /// So many samples meet it.
+    samples: u32,
+}
+
+impl Unseen {
+    /// What becomes of a highlight in a pixel whose centre did not meet it, and has this colour.
+    pub(super) fn of(glint: Glint, center: Rgb) -> Self {
+        let with_it = (center + Rgb::splat(glint.light)).min(Rgb::ONE);
+        Self { error: squared_distance(levels(with_it), levels(center)), samples: glint.samples }
+    }
+
+    /// The squared error that may be left after so many samples.
+    pub(super) fn after(self, points: u32) -> f32 {
+        let left = self.samples.saturating_sub(points) as f32;
+        self.error * left / self.samples.max(1) as f32
+    }
+
+    /// The squared error that is expected of what so many samples did not meet.
+    pub(super) fn expected_after(self, points: u32) -> f32 {
+        VISIBLE * self.after(points.saturating_mul(SOONER))
     }
 }
 
@@ -156,11 +193,14 @@ impl Round<'_> {
     fn judge(&self, one: &mut Chosen, refined: Box<Refined>) {
         let pixel = &mut one.pixel;
         let (mut error, mut expected) = refined.errors(pixel.contrast, pixel.busy);
-        if pixel.is_thin
+        let unseen = pixel.unseen.after(refined.points());
+        if (pixel.is_thin || unseen > 0.0)
             && let Some(thin) = refined.error_of_thin()
         {
             (error, expected) = (error.max(thin), thin);
         }
+        error = error.max(unseen);
+        expected += pixel.unseen.expected_after(refined.points());
         (pixel.error, pixel.refined) = (error, Some(refined));
         pixel.stage += 1;
         let center = self.centers.at(one.x, one.y);

@@ -4,11 +4,7 @@ use std::sync::{Mutex, PoisonError};
 
 use glam::DVec2;
 
-use super::{
-    RayCounts,
-    crew::{Least, Sampler},
-    plane::Plane,
-};
+use super::{RayCounts, crew::Sampler, foretold::Foretold, plane::Plane};
 use crate::{
     aa::Sample,
     camera::View,
@@ -21,18 +17,18 @@ pub(super) struct Worker<'a> {
     pub(super) tracer: Tracer<'a>,
     pub(super) view: View,
     pub(super) traced: Vec<trace::Sample>,
-    /// The least samples of pixels with something thin, if there are any.
-    pub(super) thin: Option<&'a Plane<Least>>,
+    /// What is known to be in pixels, if there is anything.
+    pub(super) foretold: Option<&'a Plane<Foretold>>,
     pub(super) counts: &'a Mutex<RayCounts>,
 }
 
 impl Sampler for Worker<'_> {
-    fn least_samples(&self, x: u32, y: u32) -> Least {
-        self.thin.map_or(Least::default(), |thin| *thin.at(i64::from(x), i64::from(y)))
+    fn foretold(&self, x: u32, y: u32) -> Foretold {
+        self.foretold.map_or(Foretold::default(), |known| *known.at(i64::from(x), i64::from(y)))
     }
 
-    fn has_thin(&self) -> bool {
-        self.thin.is_some()
+    fn has_foretold(&self) -> bool {
+        self.foretold.is_some()
     }
 
     fn sample(&mut self, places: &[DVec2], samples: &mut Vec<Sample>) {

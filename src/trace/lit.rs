@@ -19,9 +19,14 @@ use crate::{
 /// A number in single precision for each lane.
 type Singles = [f32; LANES];
 
+/// The inner part of a highlight is at least so bright, its middle being 1.
+const INNER: f32 = 0.5;
+
 /// Hits and the light that they get.
 #[derive(Debug)]
 pub(super) struct Lit {
+    /// Whether signatures tell the inner part of a highlight.
+    tells_highlights: bool,
     /// The lanes in use.
     lanes: u64,
     pub(super) surfaces: SurfaceLanes,
@@ -42,9 +47,10 @@ pub(super) struct Lit {
 }
 
 impl Lit {
-    pub(super) fn new() -> Self {
+    pub(super) fn new(tells_highlights: bool) -> Self {
         let zero = [0.0; LANES];
         Self {
+            tells_highlights,
             lanes: 0,
             surfaces: SurfaceLanes::NONE,
             path: [0; LANES],
@@ -156,7 +162,11 @@ impl Lit {
     #[inline(always)]
     fn add_highlight(&mut self, k: usize, arriving: Rgb) {
         if self.shine[k] > 0.0 && self.mirrored[k] > 0.0 {
-            let shine = self.shine[k] * self.mirrored[k].powf(self.exponent[k]) as f32;
+            let share = self.mirrored[k].powf(self.exponent[k]) as f32;
+            if self.tells_highlights && share > INNER {
+                self.path[k] = Path::of(self.path[k]).highlight().signature();
+            }
+            let shine = self.shine[k] * share;
             for (channel, arriving) in self.specular.iter_mut().zip(arriving.to_array()) {
                 channel[k] += arriving * shine;
             }

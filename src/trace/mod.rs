@@ -43,7 +43,7 @@ pub struct Sample {
     /// The light that comes back, linear and not clamped.
     pub color: Rgb,
     /// A hash of all that the ray tree met: surfaces and their sides, cells of patterns, which lights were seen through
-    /// what. Two samples with the same signature differ by what varies smoothly.
+    /// what, and the inner parts of highlights if wanted. Two samples with the same signature differ by what varies smoothly.
     pub signature: u32,
     /// A number of the cells of patterns that it shows, itself or by what it reflects and transmits; 0 for none.
     pub cell: u32,
@@ -120,8 +120,9 @@ pub struct Tracer<'a> {
 }
 
 impl<'a> Tracer<'a> {
-    /// A tracer that casts no ray of a level above `depth`, camera rays having level 1.
-    pub fn new(scene: &'a Scene, depth: u32) -> Self {
+    /// A tracer that casts no ray of a level above `depth`, camera rays having level 1; `tells_highlights` is whether
+    /// signatures tell the inner part of a highlight from the rest of its surface.
+    pub fn new(scene: &'a Scene, depth: u32, tells_highlights: bool) -> Self {
         let (met, hits) = (MetLanes::NONE, HitLanes::NONE);
         let (tasks, rays) = (Vec::new(), Vec::new());
         Self {
@@ -131,7 +132,7 @@ impl<'a> Tracer<'a> {
             rays: Vec::new(),
             tasks: Vec::new(),
             batch: Box::new(Batch { tasks, rays, met, hits }),
-            lit: Box::new(Lit::new()),
+            lit: Box::new(Lit::new(tells_highlights)),
             gathered: Vec::new(),
         }
     }

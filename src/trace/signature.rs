@@ -46,6 +46,12 @@ impl Path {
         self.mix(word)
     }
 
+    /// The inner part of a highlight, which is at least half as bright as its middle.
+    #[inline(always)]
+    pub(super) fn highlight(self) -> Self {
+        self.mix(u32::MAX - 1)
+    }
+
     #[inline(always)]
     pub(super) fn cell(self, cell: u32) -> Self {
         self.mix(cell)
