@@ -240,9 +240,9 @@ impl Adaptive {
         self.known.pixels.tiles().iter().flatten().filter(is_unsettled).count()
     }
 
-    /// What the next stages of all pixels are worth, and take.
-    pub(super) fn demand(&self) -> Demand {
-        self.known.demand()
+    /// As [`Known::demand`].
+    pub(super) fn demand(&self, is_short: bool) -> Demand {
+        self.known.demand(is_short)
     }
 
     pub(super) fn into_picture(self) -> Picture {

@@ -29,11 +29,11 @@ pub(super) fn at_step(step: u32) -> f32 {
 }
 
 /// The first level of the ladder whose threshold the error for each ray of a pixel's next stage is above, if any is.
-fn level_of(worth: &Worth) -> Option<usize> {
-    if worth.error <= 0.0 {
+fn level_of(error: f32, rays: f32) -> Option<usize> {
+    if error <= 0.0 {
         return None;
     }
-    let share = f64::from(worth.error) / (FIRST_STEP * f64::from(worth.rays));
+    let share = f64::from(error) / (FIRST_STEP * f64::from(rays));
     // Twice the logarithm, rounded down, from the exponent and whether the mantissa is above the root of 2.
     let (bits, mantissa) = (share.to_bits(), (1 << 52) - 1);
     let is_upper = bits & mantissa >= SQRT_2.to_bits() & mantissa;
@@ -49,12 +49,15 @@ pub(super) struct Demand {
     expected: [f64; LEVELS],
     settled: f64,
     pixels: usize,
+    /// Whether there may not be time for all pixels that are to get rays whatever their error.
+    is_short: bool,
 }
 
 impl Demand {
-    /// The demand of so many pixels, of which nothing is known yet.
-    pub(super) fn of(pixels: usize) -> Self {
-        Self { rays: [0; LEVELS], expected: [0.0; LEVELS], settled: 0.0, pixels }
+    /// The demand of so many pixels, of which nothing is known yet; `is_short` is whether there may not be time for all
+    /// that are to get rays whatever their error.
+    pub(super) fn of(pixels: usize, is_short: bool) -> Self {
+        Self { rays: [0; LEVELS], expected: [0.0; LEVELS], settled: 0.0, pixels, is_short }
     }
 
     /// What is known of these and of others of the same picture.
@@ -70,7 +73,8 @@ impl Demand {
     /// Takes in what is known of a pixel.
     pub(super) fn add(&mut self, worth: &Worth) {
         let expected = f64::from(worth.expected);
-        match level_of(worth) {
+        let error = if self.is_short { worth.if_short } else { worth.error };
+        match level_of(error, worth.rays) {
             Some(level) => {
                 self.rays[level] += worth.rays.ceil() as u64;
                 self.expected[level] += expected;
@@ -122,10 +126,10 @@ mod tests {
     /// Oracle: levels counted by hand; a stage is above the threshold of its level and all lower ones.
     #[test]
     fn demand_is_counted_by_level() {
-        let mut demand = Demand::of(6);
+        let mut demand = Demand::of(6, false);
         assert_eq!(demand.level_for(1.0), None);
         let mut add = |per_ray: f32, rays: f32, expected: f32| {
-            demand.add(&Worth { error: per_ray * rays, rays, expected });
+            demand.add(&Worth { error: per_ray * rays, if_short: 0.0, rays, expected });
         };
         add(2000.0, 10.0, 9.0); // above the first step
         add(512.0, 5.0, 4.0); // two steps down

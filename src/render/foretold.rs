@@ -19,6 +19,9 @@ pub struct Foretold {
     pub glint: Glint,
 }
 
+/// The levels by which a thing is taken to differ from what is behind it.
+const CONTRAST: f32 = 128.0;
+
 /// How many samples a pixel gets at least.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Least {
@@ -32,6 +35,11 @@ impl Least {
     /// Whether there is such a number.
     pub(super) fn is_some(self) -> bool {
         self.samples > 0
+    }
+
+    /// The squared error where the samples are fewer: that of a part of the pixel as large as what so many samples just meet.
+    pub(super) fn unmet_error(self) -> f32 {
+        (CONTRAST / self.if_alike.max(4) as f32).powi(2)
     }
 
     /// What is needed for both.

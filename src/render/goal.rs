@@ -98,7 +98,7 @@ impl Unfinished {
     fn step_down<S: Sampler + Send>(&mut self, crew: &Crew<S>, wanted: f64, watch: &Watch) {
         if !self.is_in_step {
             self.is_in_step = true;
-            let demand = self.adaptive.demand();
+            let demand = self.adaptive.demand(false);
             self.step = demand.level_for_error(self.step as usize, wanted) as u32;
         }
         let threshold = at_step(self.step);
@@ -174,7 +174,7 @@ impl Unfinished {
         end: Instant,
         watch: &Watch,
     ) -> bool {
-        let demand = self.adaptive.demand();
+        let demand = self.adaptive.demand(true);
         let affordable = left.as_secs_f64() / self.seconds_per_ray;
         let Some(level) = demand.level_for(affordable * SHARE_OF_TIME) else { return false };
         let share = (affordable * 0.9 / demand.at_level(level).max(1) as f64).min(1.0);

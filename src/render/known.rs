@@ -170,12 +170,12 @@ impl Known {
         *self.outlook_mut(tile.x0, tile.y0) = Outlook::of(self.pixels.of(tile));
     }
 
-    /// What the next stages of all pixels are worth, and take.
-    pub(super) fn demand(&self) -> Demand {
+    /// What the next stages of all pixels are worth, and take; `is_short` as for [`Demand::of`].
+    pub(super) fn demand(&self, is_short: bool) -> Demand {
         let tiles = self.pixels.tiles().par_chunks(TILES_AT_ONCE);
         let outlooks = self.outlooks.values().par_chunks(TILES_AT_ONCE);
         let of_some = |(tiles, outlooks): (&[Vec<Pixel>], &[Outlook])| {
-            let mut demand = Demand::of(0);
+            let mut demand = Demand::of(0, is_short);
             for (pixels, outlook) in tiles.iter().zip(outlooks) {
                 match pixels.as_slice() {
                     [] => demand.settle(outlook.expected),
@@ -186,7 +186,7 @@ impl Known {
         };
         let parts: Vec<Demand> = tiles.zip(outlooks).map(of_some).collect();
         // In the order of the tiles, on which sums depend.
-        parts.iter().fold(Demand::of(self.pixels.area().len()), Demand::and)
+        parts.iter().fold(Demand::of(self.pixels.area().len(), is_short), Demand::and)
     }
 }
 

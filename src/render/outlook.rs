@@ -15,6 +15,8 @@ const OWN_CORNERS: f32 = 1.5;
 pub(super) struct Worth {
     /// Its squared error if it may get more rays, else 0; infinite if it is to get them whatever its error.
     pub(super) error: f32,
+    /// The same, but never infinite: what it goes by where there may not be time for all that are to get rays.
+    pub(super) if_short: f32,
     /// The rays of all kinds that its next stage is taken to cost.
     pub(super) rays: f32,
     /// What it adds to the picture's squared error.
@@ -25,25 +27,30 @@ impl Worth {
     /// The worth of a pixel whose centre is `center` and which adds `expected` to the picture's error.
     pub(super) fn of(pixel: &Pixel, expected: f32, stages: &[Stage], center: &Sample) -> Self {
         let Some(next) = stages.get(usize::from(pixel.stage)) else {
-            return Self { error: 0.0, rays: 0.0, expected };
+            return Self { expected, ..Self::default() };
         };
         let camera_rays = match pixel.stage {
             0 if pixel.suspect => SHARED_CORNERS,
             0 => OWN_CORNERS,
             _ => (next.points - pixel.points()) as f32,
         };
-        let error = if pixel.is_due() { f32::INFINITY } else { pixel.error };
-        Self { error, rays: camera_rays * center.rays as f32, expected }
+        let rays = camera_rays * center.rays as f32;
+        if pixel.is_due() {
+            let if_short = pixel.error.max(pixel.least.unmet_error());
+            return Self { error: f32::INFINITY, if_short, rays, expected };
+        }
+        Self { error: pixel.error, if_short: pixel.error, rays, expected }
     }
 
     /// Whether the pixel is above the threshold and may get more rays.
     #[inline]
     pub(super) fn exceeds(&self, threshold: Threshold) -> bool {
-        let limit = match threshold {
-            Threshold::Error(limit) => limit,
-            Threshold::PerRay(limit) | Threshold::PerRayOfSome(limit, ..) => limit * self.rays,
+        let (error, limit) = match threshold {
+            Threshold::Error(limit) => (self.error, limit),
+            Threshold::PerRay(limit) => (self.error, limit * self.rays),
+            Threshold::PerRayOfSome(limit, ..) => (self.if_short, limit * self.rays),
         };
-        (self.error > 0.0) & (self.error >= limit)
+        (error > 0.0) & (error >= limit)
     }
 }
 
@@ -53,6 +60,8 @@ pub(super) struct Outlook {
     /// The largest error that more rays may lessen, and the largest for each ray.
     error: f32,
     per_ray: f32,
+    /// The latter where there may not be time for all.
+    if_short: f32,
     /// What the pixels add to the picture's squared error.
     pub(super) expected: f64,
 }
@@ -61,11 +70,11 @@ impl Outlook {
     /// The outlook of a tile's pixels, row by row.
     pub(super) fn of(pixels: &[Pixel]) -> Self {
         pixels.iter().fold(Self::default(), |outlook, Pixel { worth, .. }| {
-            let (error, rays) = (worth.error, worth.rays);
-            let per_ray = if error > 0.0 { error / rays } else { 0.0 };
+            let per_ray = |error: f32| if error > 0.0 { error / worth.rays } else { 0.0 };
             Self {
-                error: outlook.error.max(error),
-                per_ray: outlook.per_ray.max(per_ray),
+                error: outlook.error.max(worth.error),
+                per_ray: outlook.per_ray.max(per_ray(worth.error)),
+                if_short: outlook.if_short.max(per_ray(worth.if_short)),
                 expected: outlook.expected + f64::from(worth.expected),
             }
         })
@@ -88,9 +97,45 @@ impl Outlook {
         self.can_improve()
             && match threshold {
                 Threshold::Error(limit) => self.error >= limit,
-                Threshold::PerRay(limit) | Threshold::PerRayOfSome(limit, ..) => {
-                    self.per_ray * ROUNDING >= limit
-                }
+                Threshold::PerRay(limit) => self.per_ray * ROUNDING >= limit,
+                Threshold::PerRayOfSome(limit, ..) => self.if_short * ROUNDING >= limit,
             }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{aa::refined::stages, render::Least};
+
+    #[test]
+    fn pixels_to_be_sampled_come_first_unless_time_is_short() {
+        let (stages, center) = (stages(64), Sample { rays: 3, ..Sample::default() });
+        let worth = |samples: u32, error: f32| {
+            let least = Least { samples, if_alike: 8 * samples };
+            let pixel = Pixel { error, least, ..Pixel::default() };
+            let worth = Worth::of(&pixel, error, &stages, &center);
+            (worth, Outlook::of(&[Pixel { worth, ..pixel }]))
+        };
+        let late = |limit: f32| Threshold::PerRayOfSome(limit, 1.0, 7);
+        let per_ray = 3.0 * OWN_CORNERS;
+        for (samples, error, limit) in [(0, 45.0, 10.0), (4, 45.0, 10.0), (4, 1.0, 16.0 / per_ray)]
+        {
+            let (worth, outlook) = worth(samples, error);
+            assert_eq!(outlook.is_due(), samples > 0);
+            for (threshold, exceeds) in [
+                (Threshold::Error(1e6), samples > 0),
+                (Threshold::PerRay(1e6), samples > 0),
+                (late(0.99 * limit), true),
+                (late(1.01 * limit), false),
+            ] {
+                assert_eq!(worth.exceeds(threshold), exceeds, "{samples} {error} {threshold:?}");
+                assert_eq!(
+                    outlook.may_exceed(threshold),
+                    exceeds,
+                    "{samples} {error} {threshold:?}"
+                );
+            }
+        }
     }
 }
