@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::{
     Progress,
-    foretold::Foretold,
+    hints::Hint,
     plane::{Area, Plane, TILE_SIDE},
 };
 use crate::aa::Sample;
@@ -21,12 +21,12 @@ pub trait Sampler {
     fn sample(&mut self, places: &[DVec2], samples: &mut Vec<Sample>);
 
     /// What is known to be in a pixel that few samples may miss; the adaptive mode asks.
-    fn foretold(&self, _x: u32, _y: u32) -> Foretold {
-        Foretold::default()
+    fn hint(&self, _x: u32, _y: u32) -> Hint {
+        Hint::default()
     }
 
     /// Whether anything is known to be in any pixel.
-    fn has_foretold(&self) -> bool {
+    fn has_hints(&self) -> bool {
         false
     }
 }

@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 use super::{
     crew::{Crew, Sampler, in_turn, lock},
     demand::Demand,
-    foretold::{Foretold, Least},
     hidden::hidden_error,
+    hints::{Hint, Least},
     look::{ONE_COLOR, Window, corrected, skips_cells},
     outlook::{Outlook, Worth},
     plane::{Area, Plane, Tiled},
@@ -22,7 +22,7 @@ use crate::{
 
 /// The samples that a pixel gets at least where a pattern's cells are no wider than it: its centre and corners, and
 /// those of its neighbours, may all have met the same colour.
-const LEAST_IN_CELLS: Least = Least { samples: 8, if_alike: 8 };
+const LEAST_IN_CELLS: Least = Least { samples: 8, if_alike: 8, part: 0.5 };
 
 /// Tiles that a thread takes at least, where all are gone through.
 const TILES_AT_ONCE: usize = 64;
@@ -59,7 +59,7 @@ impl Known {
         least: Threshold,
     ) {
         let area = *self.pixels.area();
-        let has_foretold = (crew.new_sampler)().has_foretold();
+        let has_hints = (crew.new_sampler)().has_hints();
         let of_one_color = Mutex::new(Vec::new());
         let known = Mutex::new(&mut *self);
         let never = || false;
@@ -69,12 +69,12 @@ impl Known {
             let mut pixels = pixels_of(tile, &window, &suspects, centers);
             for (pixel, (x, y)) in pixels.iter_mut().zip(tile.pixels()) {
                 let (center, mut expected) = (centers.at(x, y), pixel.error);
-                if has_foretold {
-                    let Foretold { least, glint } = sampler.foretold(x as u32, y as u32);
+                if has_hints {
+                    let Hint { least, glint } = sampler.hint(x as u32, y as u32);
                     pixel.is_thin = least.is_some();
                     pixel.least = pixel.least.max(least);
                     pixel.unseen = Unseen::of(glint, center.color);
-                    pixel.error = pixel.error.max(pixel.unseen.after(0));
+                    pixel.error = pixel.error.max(pixel.unseen.error());
                     expected += pixel.unseen.expected_after(0);
                 }
                 pixel.worth = Worth::of(pixel, expected, stages, center);

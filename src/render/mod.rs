@@ -4,10 +4,10 @@ mod adaptive;
 mod blocks;
 mod crew;
 mod demand;
-mod foretold;
 mod goal;
 mod hidden;
 mod highlights;
+mod hints;
 mod known;
 mod look;
 mod outlook;
@@ -32,8 +32,9 @@ use thiserror::Error;
 
 pub use blocks::{Account, Block, Sink, blocks};
 pub use crew::Sampler;
-pub use foretold::{Foretold, Glint, Least};
 pub use goal::Unfinished;
+use hints::Hints;
+pub use hints::{Glint, Hint, Least};
 pub use picture::{Picture, picture};
 
 pub use crate::trace::RayCounts;
@@ -250,20 +251,21 @@ pub fn render_blocks(
     let pool = pool(options.threads)?;
     let camera = options.camera.map_or(*scene.camera(), |camera| scene.own_camera(camera));
     let (view, mode) = (camera.view(width, height), (options.aa, options.goal));
-    let forecast = is_adaptive.then(|| foretold::foretell(scene, &view, &Area::of(&part)));
-    // They cost the adaptive mode a few rays about every highlight.
-    let tells_highlights = match &forecast {
-        Some(forecast) => forecast.has_glints,
+    let area = Area::of(&part);
+    let hints = is_adaptive.then(|| pool.install(|| Hints::of(scene, &view, &area)));
+    // Telling highlights apart costs the adaptive mode a few rays about each, which narrow ones are worth.
+    let tells_highlights = match &hints {
+        Some(hints) => hints.has_glints,
         None => options.aa != AntiAliasing::None,
     };
-    let foretold = forecast.and_then(|forecast| forecast.pixels);
+    let hints = hints.and_then(|hints| hints.pixels);
     let block = |number: usize, place: &Tile, progress: &(dyn Fn(Progress) + Sync)| {
         let rays = Mutex::new(RayCounts::default());
         let new_sampler = || Worker {
             tracer: Tracer::new(scene, depth, tells_highlights),
             view,
             traced: Vec::new(),
-            foretold: foretold.as_ref(),
+            hints: hints.as_ref(),
             counts: &rays,
         };
         let watch = Watch { sink, place, rays: &rays };

@@ -10,6 +10,9 @@ use crate::aa::{Sample, refined::Stage};
 const SHARED_CORNERS: f32 = 0.6;
 const OWN_CORNERS: f32 = 1.5;
 
+/// The part of the thin things that are expected to show, before any sample met them: others are hidden, or like what is behind them.
+const SHOWN: f32 = 0.25;
+
 /// What more rays are worth to a pixel.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Worth {
@@ -36,7 +39,8 @@ impl Worth {
         };
         let rays = camera_rays * center.rays as f32;
         if pixel.is_due() {
-            let if_short = pixel.error.max(pixel.least.unmet_error());
+            let unmet = pixel.least.unmet_error();
+            let (if_short, expected) = (pixel.error.max(unmet), expected + SHOWN * unmet);
             return Self { error: f32::INFINITY, if_short, rays, expected };
         }
         Self { error: pixel.error, if_short: pixel.error, rays, expected }
@@ -112,7 +116,7 @@ mod tests {
     fn pixels_to_be_sampled_come_first_unless_time_is_short() {
         let (stages, center) = (stages(64), Sample { rays: 3, ..Sample::default() });
         let worth = |samples: u32, error: f32| {
-            let least = Least { samples, if_alike: 8 * samples };
+            let least = Least { samples, if_alike: 8 * samples, part: 1.0 / 32.0 };
             let pixel = Pixel { error, least, ..Pixel::default() };
             let worth = Worth::of(&pixel, error, &stages, &center);
             (worth, Outlook::of(&[Pixel { worth, ..pixel }]))

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     crew::{Sampler, Scratch},
-    foretold::{Glint, Least},
+    hints::{Glint, Least},
     outlook::Worth,
     plane::{Plane, Tiled},
 };
@@ -24,10 +24,8 @@ use crate::{
 /// Samples that are taken without looking at the clock.
 const AT_ONCE: usize = 512;
 
-/// How much sooner a highlight shows in a sample than samples tell how bright it is.
+/// So many times as few samples meet a highlight as tell how bright it is: its flanks show as well.
 const SOONER: u32 = 8;
-/// The part of the highlights that are neither hidden nor in shadow.
-const VISIBLE: f32 = 0.5;
 
 /// When a pixel gets more rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +34,7 @@ pub(super) enum Threshold {
     Error(f32),
     /// Its squared error for each ray of the next stage is at least this.
     PerRay(f32),
-    /// The same, for a share of the pixels, picked by hash with the number given; and for one stage only.
+    /// The same, for a share of the pixels, picked by hash with the number given; for one stage only, and not whatever their error.
     PerRayOfSome(f32, f32, u32),
 }
 
@@ -63,7 +61,7 @@ pub(super) struct Pixel {
     pub(super) busy: f32,
     /// Whether something thin is known to be in it.
     pub(super) is_thin: bool,
-    /// Samples of the sequence that it gets whatever its error.
+    /// Samples of the sequence that it gets whatever its error, unless time is short.
     pub(super) least: Least,
     /// What highlights narrower than it may add unseen.
     pub(super) unseen: Unseen,
@@ -86,31 +84,36 @@ impl Pixel {
     }
 }
 
-/// What is in a pixel that its samples may not have met.
+/// The highlights of a pixel that its samples may not have met.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Unseen {
-    /// The squared error if they met nothing of it.
+    /// The squared error if they met nothing of them.
     error: f32,
-    /// So many samples meet it.
+    /// So many samples tell how bright they are.
     samples: u32,
 }
 
 impl Unseen {
-    /// What becomes of a highlight in a pixel whose centre did not meet it, and has this colour.
+    /// The highlights in a pixel whose centre met none of them, and has this colour.
     pub(super) fn of(glint: Glint, center: Rgb) -> Self {
         let with_it = (center + Rgb::splat(glint.light)).min(Rgb::ONE);
         Self { error: squared_distance(levels(with_it), levels(center)), samples: glint.samples }
     }
 
+    /// The squared error with the centre alone.
+    pub(super) fn error(self) -> f32 {
+        self.error
+    }
+
     /// The squared error that may be left after so many samples.
-    pub(super) fn after(self, points: u32) -> f32 {
+    fn error_after(self, points: u32) -> f32 {
         let left = self.samples.saturating_sub(points) as f32;
         self.error * left / self.samples.max(1) as f32
     }
 
     /// The squared error that is expected of what so many samples did not meet.
     pub(super) fn expected_after(self, points: u32) -> f32 {
-        VISIBLE * self.after(points.saturating_mul(SOONER))
+        self.error_after(points.saturating_mul(SOONER))
     }
 }
 
@@ -193,14 +196,18 @@ impl Round<'_> {
     fn judge(&self, one: &mut Chosen, refined: Box<Refined>) {
         let pixel = &mut one.pixel;
         let (mut error, mut expected) = refined.errors(pixel.contrast, pixel.busy);
-        let unseen = pixel.unseen.after(refined.points());
+        let points = refined.points();
+        let may_go_on = self.stages.last().is_some_and(|last| points < last.points);
+        let unseen = pixel.unseen.error_after(points);
         if (pixel.is_thin || unseen > 0.0)
             && let Some(thin) = refined.error_of_thin()
         {
             (error, expected) = (error.max(thin), thin);
         }
-        error = error.max(unseen);
-        expected += pixel.unseen.expected_after(refined.points());
+        if may_go_on {
+            error = error.max(unseen);
+        }
+        expected += pixel.unseen.expected_after(points);
         (pixel.error, pixel.refined) = (error, Some(refined));
         pixel.stage += 1;
         let center = self.centers.at(one.x, one.y);

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::foretold::{Least, Marks, samples};
+use super::hints::{Least, Marks, samples};
 use crate::{camera::View, scene::Scene};
 
 /// Wider things than this, in pixels, are found by samples.
@@ -31,7 +31,11 @@ pub(super) fn mark_thin(scene: &Scene, view: &View, marks: &mut Marks) {
             let (across, length) = (ACROSS / width, ((b - a).length() + width).min(1.0));
             // Where nothing of it was met it may be short, such as a sphere, or in a corner.
             let if_alike = across * (ACROSS / length).max(1.0) * IN_A_CORNER;
-            let least = Least { samples: samples(across), if_alike: samples(if_alike) };
+            let least = Least {
+                samples: samples(across),
+                if_alike: samples(if_alike),
+                part: (width * length).min(1.0) as f32,
+            };
             marks.note([a, b], reach, |known| known.least = known.least.max(least));
         }
     }

@@ -4,7 +4,7 @@ use std::sync::{Mutex, PoisonError};
 
 use glam::DVec2;
 
-use super::{RayCounts, crew::Sampler, foretold::Foretold, plane::Plane};
+use super::{RayCounts, crew::Sampler, hints::Hint, plane::Plane};
 use crate::{
     aa::Sample,
     camera::View,
@@ -18,17 +18,17 @@ pub(super) struct Worker<'a> {
     pub(super) view: View,
     pub(super) traced: Vec<trace::Sample>,
     /// What is known to be in pixels, if there is anything.
-    pub(super) foretold: Option<&'a Plane<Foretold>>,
+    pub(super) hints: Option<&'a Plane<Hint>>,
     pub(super) counts: &'a Mutex<RayCounts>,
 }
 
 impl Sampler for Worker<'_> {
-    fn foretold(&self, x: u32, y: u32) -> Foretold {
-        self.foretold.map_or(Foretold::default(), |known| *known.at(i64::from(x), i64::from(y)))
+    fn hint(&self, x: u32, y: u32) -> Hint {
+        self.hints.map_or(Hint::default(), |known| *known.at(i64::from(x), i64::from(y)))
     }
 
-    fn has_foretold(&self) -> bool {
-        self.foretold.is_some()
+    fn has_hints(&self) -> bool {
+        self.hints.is_some()
     }
 
     fn sample(&mut self, places: &[DVec2], samples: &mut Vec<Sample>) {

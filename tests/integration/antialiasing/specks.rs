@@ -2,7 +2,11 @@
 
 use std::{f64::consts::PI, fmt::Write};
 
-use whitted::{film::Film, render::RenderOptions, scene::Scene};
+use whitted::{
+    film::{Film, Tile},
+    render::RenderOptions,
+    scene::Scene,
+};
 
 use super::{
     super::support,
@@ -97,12 +101,8 @@ fn specks_in_a_mirror_are_found_by_chance() {
     }
 }
 
-/// Shiny balls whose highlights are narrower than a pixel: the adaptive mode finds them, and what every mode says of its error is
-/// true.
-///
-/// Oracle: a converged picture.
-#[test]
-fn small_highlights_are_found() {
+/// Shiny balls whose highlights are narrower than a pixel.
+fn shiny_balls() -> Scene {
     let mut objects = String::new();
     for k in 0..60_u32 {
         // Evenly spread, by the golden ratio.
@@ -111,7 +111,7 @@ fn small_highlights_are_found() {
         let shape = format!("{{ center = [{x}, {y}, {z}], radius = 0.4 }}");
         let _ = writeln!(objects, "{{ material = \"shiny\", shape.sphere = {shape} }},");
     }
-    let scene = support::scene(&format!(
+    support::scene(&format!(
         r"resolution = [72, 72]
         depth = 3
         background = [0.5, 0.6, 0.8]
@@ -119,7 +119,15 @@ fn small_highlights_are_found() {
         light = [{{ position = [8, 12, 10], intensity = 0.5 }}, {{ position = [-9, 10, 6], intensity = 0.5 }}]
         material.shiny = {{ color = [0.05, 0.05, 0.05], ambient = 0.1, diffuse = 0.2, specular = 1, shininess = 400 }}
         object = [{objects}]"
-    ));
+    ))
+}
+
+/// The adaptive mode finds them, and what every mode says of its error is true.
+///
+/// Oracle: a converged picture.
+#[test]
+fn small_highlights_are_found() {
+    let scene = shiny_balls();
     let reference = rendered(&scene, mode("sobol:1024")).film;
     let mut honest = |aa: &str| {
         let rendering = rendered(&scene, mode(aa));
@@ -133,4 +141,19 @@ fn small_highlights_are_found() {
     assert!(one > 2.0 * four && four > 1.5 * sixteen);
     let [coarse, fine, finest] = ["adaptive:8", "adaptive:4", "adaptive:1"].map(&mut honest);
     assert!(coarse < 0.2 * one && fine < 0.7 * coarse && finest < fine);
+}
+
+/// Oracle: the whole picture. The first part shows no ball, but the rays around it are as told apart as elsewhere.
+#[test]
+fn parts_with_small_highlights_are_those_of_the_whole() {
+    let scene = shiny_balls();
+    let whole = rendered(&scene, mode("adaptive:4")).film;
+    for part in [Tile { x0: 30, y0: 0, x1: 41, y1: 7 }, Tile { x0: 21, y0: 30, x1: 50, y1: 47 }] {
+        let options =
+            RenderOptions { crop: Some(part), aa: mode("adaptive:4"), ..Default::default() };
+        let film = support::rendering(&scene, &options).film;
+        for (x, y) in (part.y0..part.y1).flat_map(|y| (part.x0..part.x1).map(move |x| (x, y))) {
+            assert_eq!(film.pixel(x - part.x0, y - part.y0), whole.pixel(x, y), "{x}, {y}");
+        }
+    }
 }

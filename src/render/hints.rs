@@ -12,23 +12,25 @@ use crate::{camera::View, scene::Scene};
 
 /// What is known to be in a pixel, which few samples may miss.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Foretold {
+pub struct Hint {
     /// The samples that it gets because of something thin.
     pub least: Least,
     /// The highlights narrower than it.
     pub glint: Glint,
 }
 
-/// The levels by which a thing is taken to differ from what is behind it.
+/// The levels by which a thing is taken to differ from what is behind it, as long as nothing else is known of it.
 const CONTRAST: f32 = 128.0;
 
-/// How many samples a pixel gets at least.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+/// How many samples a pixel gets at least, unless time is up before.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Least {
-    /// In any case.
+    /// Whatever they meet.
     pub samples: u32,
     /// As long as all of them met the same; not fewer.
     pub if_alike: u32,
+    /// The part of the pixel that is covered by what they are to meet.
+    pub part: f32,
 }
 
 impl Least {
@@ -37,22 +39,25 @@ impl Least {
         self.samples > 0
     }
 
-    /// The squared error where the samples are fewer: that of a part of the pixel as large as what so many samples just meet.
+    /// The squared error if nothing of it was met.
     pub(super) fn unmet_error(self) -> f32 {
-        (CONTRAST / self.if_alike.max(4) as f32).powi(2)
+        (CONTRAST * self.part.min(0.5)).powi(2)
     }
 
     /// What is needed for both.
     pub(super) fn max(self, other: Self) -> Self {
-        let samples = self.samples.max(other.samples);
-        Self { samples, if_alike: self.if_alike.max(other.if_alike) }
+        Self {
+            samples: self.samples.max(other.samples),
+            if_alike: self.if_alike.max(other.if_alike),
+            part: self.part.max(other.part),
+        }
     }
 }
 
-/// Highlights in a pixel that are narrower than it.
+/// Highlights in a pixel that are narrower than it: seen by the camera and not in shadow.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Glint {
-    /// What they add to its light if nothing hides them or is between them and the light.
+    /// What they add to its light, in the brightest channel.
     pub light: f32,
     /// So many samples meet them all.
     pub samples: u32,
@@ -66,30 +71,32 @@ impl Glint {
 }
 
 /// What the scene tells of a picture.
-pub(super) struct Forecast {
+pub(super) struct Hints {
     /// Of the pixels of an area; none if it tells nothing of any.
-    pub(super) pixels: Option<Plane<Foretold>>,
-    /// Whether any pixel of the whole picture has a glint.
+    pub(super) pixels: Option<Plane<Hint>>,
+    /// Whether there is a glint anywhere, in the area or not.
     pub(super) has_glints: bool,
 }
 
-/// What the scene tells of the pixels of an area.
-pub(super) fn foretell(scene: &Scene, view: &View, area: &Area) -> Forecast {
-    let mut marks = Marks { area: *area, pixels: None };
-    mark_thin(scene, view, &mut marks);
-    let has_glints = mark_highlights(scene, view, &mut marks);
-    Forecast { pixels: marks.pixels, has_glints }
+impl Hints {
+    /// What the scene tells of the pixels of an area.
+    pub(super) fn of(scene: &Scene, view: &View, area: &Area) -> Self {
+        let mut marks = Marks { area: *area, pixels: None };
+        mark_thin(scene, view, &mut marks);
+        let has_glints = mark_highlights(scene, view, &mut marks);
+        Self { pixels: marks.pixels, has_glints }
+    }
 }
 
 /// What is known of pixels so far.
 pub(super) struct Marks {
     area: Area,
-    pixels: Option<Plane<Foretold>>,
+    pixels: Option<Plane<Hint>>,
 }
 
 impl Marks {
     /// Notes something in all pixels that come within `reach` of the way from `a` to `b`, all in pixels.
-    pub(super) fn note(&mut self, [a, b]: [DVec2; 2], reach: f64, note: impl Fn(&mut Foretold)) {
+    pub(super) fn note(&mut self, [a, b]: [DVec2; 2], reach: f64, note: impl Fn(&mut Hint)) {
         let area = self.area;
         let clip = |x: f64, low: i64, high: i64| (x.floor() as i64).clamp(low, high);
         let (low, high) = (a.min(b) - reach, a.max(b) + reach);
@@ -101,15 +108,14 @@ impl Marks {
             let (p, q) = (a.x + (b.x - a.x) * s, a.x + (b.x - a.x) * t);
             let (left, right) = (p.min(q) - reach, p.max(q) + reach);
             for x in clip(left, area.x0, area.x1)..clip(right + 1.0, area.x0, area.x1) {
-                let pixels =
-                    self.pixels.get_or_insert_with(|| Plane::new(area, Foretold::default()));
+                let pixels = self.pixels.get_or_insert_with(|| Plane::new(area, Hint::default()));
                 note(pixels.at_mut(x, y));
             }
         }
     }
 }
 
-/// A number of samples, at least that.
+/// A number of samples, at least that; the largest number there is, if that is not enough.
 pub(super) fn samples(at_least: f64) -> u32 {
     at_least.ceil() as u32
 }
