@@ -19,7 +19,7 @@ pub(crate) fn picture_bytes(width: u32, height: u32) -> u128 {
 /// Bytes that are kept of the pixels on the way to an error or a time, about; those in smooth parts take less, those
 /// that are refined twice as much.
 pub(crate) fn goal_bytes(width: u32, height: u32) -> u128 {
-    u128::from(width) * u128::from(height) * 100
+    u128::from(width) * u128::from(height) * 110
 }
 
 /// Bytes that an object and its part of the tree need while that is built, which is when they need most.
