@@ -39,9 +39,10 @@ impl Least {
         self.samples > 0
     }
 
-    /// The squared error if nothing of it was met.
-    pub(super) fn unmet_error(self) -> f32 {
-        (CONTRAST * self.part.min(0.5)).powi(2)
+    /// The squared error if it was not met, times the chance that so many samples did not meet it.
+    pub(super) fn unmet_error(self, samples: u32) -> f32 {
+        let part = self.part.min(0.5);
+        (CONTRAST * part).powi(2) * (1.0 - part).powf(samples as f32)
     }
 
     /// What is needed for both.

@@ -39,7 +39,9 @@ impl Worth {
         };
         let rays = camera_rays * center.rays as f32;
         if pixel.is_due() {
-            let unmet = pixel.least.unmet_error();
+            // Where neighbours differ, the error tells.
+            let after = 1 + pixel.points();
+            let unmet = if pixel.suspect { 0.0 } else { pixel.least.unmet_error(after) };
             let (if_short, expected) = (pixel.error.max(unmet), expected + SHOWN * unmet);
             return Self { error: f32::INFINITY, if_short, rays, expected };
         }
@@ -123,7 +125,7 @@ mod tests {
         };
         let late = |limit: f32| Threshold::PerRayOfSome(limit, 1.0, 7);
         let per_ray = 3.0 * OWN_CORNERS;
-        for (samples, error, limit) in [(0, 45.0, 10.0), (4, 45.0, 10.0), (4, 1.0, 16.0 / per_ray)]
+        for (samples, error, limit) in [(0, 45.0, 10.0), (4, 45.0, 10.0), (4, 1.0, 15.5 / per_ray)]
         {
             let (worth, outlook) = worth(samples, error);
             assert_eq!(outlook.is_due(), samples > 0);
