@@ -1,5 +1,5 @@
-//! Highlights narrower than a pixel, of which samples beside them show nothing: where spheres have them is known from the
-//! scene.
+//! Highlights narrower than a pixel, of which samples beside them show nothing: where spheres have them is known from
+//! the scene.
 
 use std::{
     f64::consts::{LN_2, PI},
@@ -9,7 +9,10 @@ use std::{
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-use super::hints::{Glint, Marks, samples};
+use super::{
+    hints::{Glint, Marks, samples},
+    thin,
+};
 use crate::{
     camera::View,
     geometry::{Ray, Shape, Sphere},
@@ -19,8 +22,6 @@ use crate::{
 
 /// Wider highlights than this, in pixels, are seen by samples beside them.
 const WIDEST: f64 = 0.8;
-/// Spheres no wider than this, in pixels, get their samples as thin things.
-const THIN: f64 = 1.5;
 /// Samples in a square as wide as a highlight.
 const WITHIN: f64 = 4.0;
 /// The least light that a highlight adds to a pixel: a level of 255, if the pixel is black.
@@ -36,7 +37,8 @@ pub(super) fn mark_highlights(scene: &Scene, view: &View, marks: &mut Marks) -> 
     let of_primitive = |primitive: u32| {
         let Shape::Sphere(sphere) = scene.shape(primitive) else { return Vec::new() };
         let depth = view.depth(sphere.center());
-        let is_thin = 2.0 * sphere.radius() <= THIN * view.pixel() * depth;
+        // Thin spheres are sampled anyway.
+        let is_thin = 2.0 * sphere.radius() <= thin::WIDEST * view.pixel() * depth;
         if depth <= -sphere.radius() || is_thin || !(scene.material(primitive).specular > 0.0) {
             return Vec::new();
         }
@@ -102,8 +104,8 @@ impl Highlight {
     }
 }
 
-/// The point of a sphere that mirrors a light to the eye, and the cosine of the angle there; none if there is no such point,
-/// as when one of them is inside.
+/// The point of a sphere that mirrors a light to the eye, and the cosine of the angle there; none if there is no such
+/// point, as when one of them is inside.
 ///
 /// It is between the two, where both are seen at the same angle to the normal: halving finds it.
 fn mirror_point(sphere: &Sphere, eye: DVec3, light: DVec3) -> Option<(DVec3, f64)> {

@@ -6,7 +6,7 @@ use super::hints::{Least, Marks, samples};
 use crate::{camera::View, scene::Scene};
 
 /// Wider things than this, in pixels, are found by samples.
-const WIDEST: f64 = 1.5;
+pub(super) const WIDEST: f64 = 1.5;
 /// Samples across the width of a thing.
 const ACROSS: f64 = 2.0;
 /// How many times as many samples it takes to meet what touches a pixel with a part only.
