@@ -252,8 +252,9 @@ impl Parts {
         }
     }
 
-    /// What the parts differ by, their samples being given in order: for each channel the squared error that their mean would have if
-    /// they were independent, as those of random samples are. At a single edge the mean of a grid has a third of that.
+    /// What the parts differ by, their samples being given in order: for each channel the squared error that their mean
+    /// would have if they were independent, as those of random samples are. At a single edge the mean of a grid has a
+    /// third of that.
     pub fn variance(self, samples: impl Iterator<Item = Vec3>) -> Vec3 {
         let (mut sums, mut counts, mut parts) = ([Vec3::ZERO; 4], [0_u32; 4], 1);
         for (k, sample) in samples.enumerate() {
@@ -318,6 +319,11 @@ mod tests {
             (0..9_usize).map(|k| levels[if (k / 3 + k % 3) % 3 == 0 { 5 } else { 0 }]).collect();
         let expected = 85.0_f32.powi(2) * 6.0 / 6.0;
         assert!((variance(3, &levels) / expected - 1.0).abs().max_element() < 1e-4);
+        // The last quarter of a sequence is white: 3/16 of 255² again, and a third of that.
+        let last = (0..8).map(|k| Vec3::splat(if k > 5 { 255.0 } else { 0.0 }));
+        let expected = 255.0_f32.powi(2) * 3.0 / 16.0 / 3.0;
+        let variance = Parts::OfSequence(8).variance(last);
+        assert!((variance / expected - 1.0).abs().max_element() < 1e-4);
     }
 
     /// Oracle: the variance of a handful of numbers, worked by hand; grey 0 is level 0, grey 1 is level 255.

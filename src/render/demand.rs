@@ -152,5 +152,12 @@ mod tests {
         assert_eq!(demand.level_for_error(0, error(9.0)), 2);
         assert_eq!(demand.level_for_error(5, error(0.1)), 5 + LONGEST_STEP);
         assert_eq!(demand.level_for_error(LEVELS, error(0.1)), LEVELS);
+        // What is to get rays whatever its error comes first, unless time is short.
+        for (is_short, level) in [(false, 0), (true, 2)] {
+            let mut demand = Demand::of(1, is_short);
+            let (error, if_short) = (f32::INFINITY, 5.0 * 512.0);
+            demand.add(&Worth { error, if_short, rays: 5.0, expected: 1.0 });
+            assert_eq!(demand.level_for(1.0), Some(level));
+        }
     }
 }

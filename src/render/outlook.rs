@@ -10,7 +10,8 @@ use crate::aa::{Sample, refined::Stage};
 const SHARED_CORNERS: f32 = 0.6;
 const OWN_CORNERS: f32 = 1.5;
 
-/// The part of the thin things that are expected to show, before any sample met them: others are hidden, or like what is behind them.
+/// The part of the thin things that are expected to show, before any sample met them: others are hidden, or like what is
+/// behind them.
 const SHOWN: f32 = 0.25;
 
 /// What more rays are worth to a pixel.

@@ -34,7 +34,8 @@ pub(super) enum Threshold {
     Error(f32),
     /// Its squared error for each ray of the next stage is at least this.
     PerRay(f32),
-    /// The same, for a share of the pixels, picked by hash with the number given; for one stage only, and not whatever their error.
+    /// The same, for a share of the pixels, picked by hash with the number given; for one stage only, and not whatever
+    /// their error.
     PerRayOfSome(f32, f32, u32),
 }
 

@@ -43,7 +43,8 @@ pub struct Sample {
     /// The light that comes back, linear and not clamped.
     pub color: Rgb,
     /// A hash of all that the ray tree met: surfaces and their sides, cells of patterns, which lights were seen through
-    /// what, and the inner parts of highlights if wanted. Two samples with the same signature differ by what varies smoothly.
+    /// what, and the inner parts of highlights if wanted. Two samples with the same signature differ by what varies
+    /// smoothly.
     pub signature: u32,
     /// A number of the cells of patterns that it shows, itself or by what it reflects and transmits; 0 for none.
     pub cell: u32,

@@ -92,8 +92,8 @@ fn triangles() -> Scene {
     ))
 }
 
-/// Oracle: 256 rays in each pixel, at places of which the modes use sixteen at most. Half of the truth is the least that may be
-/// said, twice the most, and within one and a half times is what most must be.
+/// Oracle: 256 rays in each pixel, at places of which the modes use sixteen at most. Half of the truth is the least that
+/// may be said, twice the most, and within one and a half times is what most must be.
 #[test]
 fn what_is_said_of_the_error_is_true() {
     let scenes = [

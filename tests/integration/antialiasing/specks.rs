@@ -1,4 +1,5 @@
-//! Specks seen in a mirror, which no geometry tells and which are found by chance; and small highlights, which are found.
+//! Specks seen in a mirror, which no geometry tells and which are found by chance; and small highlights, which are
+//! found.
 
 use std::{f64::consts::PI, fmt::Write};
 
