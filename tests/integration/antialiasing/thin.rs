@@ -146,6 +146,7 @@ fn towards(scene: &Scene, error: f64) -> Rendering {
 fn assert_honest(name: &str, rendering: &Rendering, truth: &whitted::film::Film) -> f64 {
     let error = rmse(&rendering.film, truth);
     let ratio = rendering.estimated_rmse.expect("an estimate") / error;
+    println!("{name:12} is off by {error:6.3}, and says {ratio:.2} of that");
     assert!((0.5..=2.0).contains(&ratio), "{name}: {ratio:.2} of {error:.3}");
     error
 }
