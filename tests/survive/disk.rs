@@ -1,9 +1,9 @@
 //! Full disks and deleted folders at any moment.
 
 use std::fs;
-use std::process::Command;
+use std::process::{Child, Command};
 
-use super::stop::{PICTURE, end, reference, signal, until};
+use super::stop::{PICTURE, end, reference, signal, until, wait_until_it_sleeps};
 use super::{done, folder, names_in, read, refused, run, said};
 
 /// A limit on the size of files stands in for a disk without room: writing fails halfway in the same way.
@@ -40,7 +40,7 @@ fn a_folder_deleted_on_the_way_is_made_again() {
     for stopped in [false, true] {
         fs::create_dir(at.join("sub")).expect("created");
         let child = until(at, 0.3, &["-o", "sub/a.png", "--checkpoint", "0.02"]);
-        fs::remove_dir_all(at.join("sub")).expect("deleted");
+        while_asleep(&child, || fs::remove_dir_all(at.join("sub")).expect("deleted"));
         if stopped {
             signal(&child, "-INT");
         }
@@ -64,9 +64,19 @@ fn a_place_that_cannot_be_written_any_more_is_an_error_that_says_so() {
     let at = folder.path();
     fs::create_dir(at.join("sub")).expect("created");
     let child = until(at, 0.3, &["-o", "sub/a.png"]);
-    fs::remove_dir_all(at.join("sub")).expect("deleted");
-    fs::write(at.join("sub"), "in the way").expect("written");
+    while_asleep(&child, || {
+        fs::remove_dir_all(at.join("sub")).expect("deleted");
+        fs::write(at.join("sub"), "in the way").expect("written");
+    });
     let output = end(child);
     refused(&output, 1, &["sub/a.png", "could not be written"]);
     assert_eq!(read(at, "sub"), b"in the way");
+}
+
+/// Changes files while the render that writes there stands still, so that it makes none between two steps of the change.
+fn while_asleep(child: &Child, change: impl FnOnce()) {
+    signal(child, "-STOP");
+    wait_until_it_sleeps(child);
+    change();
+    signal(child, "-CONT");
 }

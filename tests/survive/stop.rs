@@ -28,14 +28,16 @@ pub(crate) fn signal(child: &Child, name: &str) {
     sent.expect("kill is there");
 }
 
-/// Waits until a child to which that was signalled has stopped, or ended.
+/// Waits until every thread of a child to which that was signalled has stopped, or ended.
 pub(crate) fn wait_until_it_sleeps(child: &Child) {
     let id = child.id().to_string();
     loop {
-        let told =
-            Command::new("ps").args(["-o", "stat=", "-p", &id]).output().expect("ps is there");
-        let state = String::from_utf8_lossy(&told.stdout);
-        if state.trim_start().starts_with(['T', 'Z']) || state.trim().is_empty() {
+        let told = Command::new("ps")
+            .args(["-L", "-o", "stat=", "-p", &id])
+            .output()
+            .expect("ps is there");
+        let threads = String::from_utf8_lossy(&told.stdout);
+        if threads.lines().all(|state| state.trim_start().starts_with(['T', 'Z'])) {
             return;
         }
     }
