@@ -67,16 +67,22 @@ impl Packet {
                     len += 1;
                 }
             } else {
-                let prepared = prepared.get_or_insert_with(|| self.prepared());
-                let met = self.meet(simd, tree, &visit, prepared);
-                match visit.child.content() {
-                    Content::Triangles(run) if is_eye && met.count_ones() >= FEWEST_SEEING => {
-                        let eye = eye.get_or_insert_with(|| Eye::of(self));
-                        eye.leaf(simd, tree, self, searches, run, met);
+                let leaf = visit.child.content();
+                let near = self.near(simd, tree, limit, leaf);
+                if near != 0 {
+                    let prepared = prepared.get_or_insert_with(|| self.prepared());
+                    let met = self.meet(simd, tree, &visit, prepared);
+                    match leaf {
+                        Content::Triangles(run) if is_eye && met.count_ones() >= FEWEST_SEEING => {
+                            let eye = eye.get_or_insert_with(|| Eye::of(self));
+                            eye.leaf(simd, tree, self, searches, run, met);
+                        }
+                        _ => self.leaf(simd, tree, searches, (met, near), prepared, leaf),
                     }
-                    leaf => self.leaf(simd, tree, searches, (met, limit), prepared, leaf),
+                    if met != 0 {
+                        limit = self.deepest();
+                    }
                 }
-                limit = self.deepest();
             }
             loop {
                 let Some(last) = len.checked_sub(1) else { return };
@@ -89,20 +95,29 @@ impl Packet {
         }
     }
 
-    /// Has `searches` try the primitives of a leaf with the rays of the lanes `met`.
+    /// The spheres of a leaf that the beam may meet, as bits; all of anything else.
+    #[inline(always)]
+    fn near<S: Simd>(&self, simd: S, tree: &Tree, limit: f32, leaf: Content) -> u32 {
+        match leaf {
+            Content::Spheres(run) => self.beam.spheres(simd, &tree.spheres, run, limit),
+            _ => u32::MAX,
+        }
+    }
+
+    /// Has `searches` try the primitives of a leaf with the rays of the lanes `met`, or those in the lanes `near` of a
+    /// leaf of spheres.
     #[inline(always)]
     fn leaf<S: Simd>(
         &mut self,
         simd: S,
         tree: &Tree,
         searches: &mut impl Searches<S>,
-        (met, limit): (u64, f32),
+        (met, near): (u64, u32),
         prepared: &Prepared,
         leaf: Content,
     ) {
         match leaf {
             Content::Spheres(run) => {
-                let near = self.beam.spheres(simd, &tree.spheres, run, limit);
                 if near.count_ones() * RAYS_FOR_EACH <= met.count_ones() {
                     for lane in bits(near) {
                         searches.test(simd, self, run.first as usize + lane, met);
