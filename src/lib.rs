@@ -4,7 +4,7 @@
 //!
 //! [`render::render`] calls [`render::render_blocks`], which cuts the picture into [blocks](render::blocks) and renders
 //! each by itself. In a block, [`aa::AntiAliasing`] says which places on the film are asked for their colour, and a
-//! [`render::Sampler`] (for a scene the `Worker` of its module) answers for up to 64 of them at once:
+//! [`render::Sampler`] (for a scene the `Worker` of its module) answers for many of them at once:
 //! [`camera::View::direction`] turns each place into the direction of a camera ray, and `trace` of [`trace::Tracer`]
 //! follows these rays together.
 //!

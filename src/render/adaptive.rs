@@ -101,8 +101,15 @@ impl Adaptive {
             threshold,
             stop: &stop,
         };
-        crew.run(area, counted, &stop, |sampler, scratch, tile| {
-            let mut chosen = lock(&known).choose(tile, threshold);
+        // The first samples of a pixel are four and more.
+        let group = crew.tiles_at_once(4);
+        crew.run_groups(area, group, counted, &stop, |sampler, scratch, tiles| {
+            let (mut chosen, mut counts) = (Vec::new(), Vec::with_capacity(tiles.len()));
+            for tile in tiles {
+                let before = chosen.len();
+                lock(&known).choose(tile, threshold, &mut chosen);
+                counts.push(chosen.len() - before);
+            }
             if chosen.is_empty() {
                 return;
             }
@@ -118,7 +125,10 @@ impl Adaptive {
                 }
                 wanting.retain(|&place| round.wants(&chosen[place]));
             }
-            lock(&known).put_back(tile, chosen, centers, threshold);
+            let (mut known, mut chosen) = (lock(&known), chosen.into_iter());
+            for (tile, count) in tiles.iter().zip(counts).filter(|(_, count)| *count > 0) {
+                known.put_back(tile, chosen.by_ref().take(count), centers, threshold);
+            }
         });
     }
 

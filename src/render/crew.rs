@@ -10,7 +10,7 @@ use super::{
     hints::Hint,
     plane::{Area, Plane, TILE_SIDE},
 };
-use crate::aa::Sample;
+use crate::{aa::Sample, trace::BATCH};
 
 /// Asks the colour of places on the film.
 ///
@@ -19,6 +19,11 @@ pub trait Sampler {
     /// Puts the samples at `places` behind what `samples` holds, in their order. Neighbours in the list are near each
     /// other in the picture.
     fn sample(&mut self, places: &[DVec2], samples: &mut Vec<Sample>);
+
+    /// How many places, at least, are best asked for at once.
+    fn at_once(&self) -> usize {
+        BATCH
+    }
 
     /// What is known to be in a pixel that few samples may miss; the adaptive mode asks.
     fn hint(&self, _x: u32, _y: u32) -> Hint {
@@ -78,6 +83,12 @@ pub(super) struct Scratch {
 }
 
 impl<S: Sampler + Send> Crew<'_, S> {
+    /// How many tiles are best sampled together, if each pixel gets so many samples.
+    pub(super) fn tiles_at_once(&self, samples: usize) -> usize {
+        let tile = (TILE_SIDE * TILE_SIDE) as usize * samples;
+        ((self.new_sampler)().at_once() / tile).max(1)
+    }
+
     /// Lets the workers do `work` on every tile of `area`; `counted` is whether a tile's pixels count as done.
     ///
     /// Tiles for which `stop` says so are left out.
@@ -88,19 +99,33 @@ impl<S: Sampler + Send> Crew<'_, S> {
         stop: impl Fn() -> bool + Sync,
         work: impl Fn(&mut S, &mut Scratch, &Area) + Sync,
     ) {
+        self.run_groups(area, 1, counted, stop, |sampler, scratch, tiles| {
+            work(sampler, scratch, &tiles[0]);
+        });
+    }
+
+    /// As [`Crew::run`], with up to `count` tiles at once.
+    pub(super) fn run_groups(
+        &self,
+        area: &Area,
+        count: usize,
+        counted: bool,
+        stop: impl Fn() -> bool + Sync,
+        work: impl Fn(&mut S, &mut Scratch, &[Area]) + Sync,
+    ) {
         let idle: Mutex<Vec<(S, Scratch)>> = Mutex::new(Vec::new());
         let idle = || lock(&idle);
-        area.tiles().into_par_iter().with_max_len(1).for_each(|tile| {
+        area.tiles().par_chunks(count).with_max_len(1).for_each(|tiles| {
             if stop() {
                 return;
             }
             let worker = idle().pop();
             let (mut sampler, mut scratch) =
                 worker.unwrap_or_else(|| ((self.new_sampler)(), Scratch::default()));
-            work(&mut sampler, &mut scratch, &tile);
+            work(&mut sampler, &mut scratch, tiles);
             idle().push((sampler, scratch));
             if counted {
-                self.meter.add(tile.len() as u64);
+                self.meter.add(tiles.iter().map(|tile| tile.len() as u64).sum());
             }
         });
     }
@@ -152,17 +177,18 @@ pub(super) fn trace_centers<S: Sampler + Send>(
     stop: impl Fn() -> bool + Sync,
 ) {
     let area = *centers.area();
+    let group = crew.tiles_at_once(1);
     let centers = Mutex::new(centers);
-    crew.run(&area, true, stop, |sampler, scratch, tile| {
-        if lock(&centers).is_traced(tile) {
-            return;
-        }
+    crew.run_groups(&area, group, true, stop, |sampler, scratch, tiles| {
+        let untraced: Vec<&Area> =
+            tiles.iter().filter(|tile| !lock(&centers).is_traced(tile)).collect();
+        let pixels = || untraced.iter().flat_map(|tile| in_turn(tile));
         scratch.places.clear();
         scratch.samples.clear();
-        scratch.places.extend(in_turn(tile).map(|(x, y)| center(x, y)));
+        scratch.places.extend(pixels().map(|(x, y)| center(x, y)));
         sampler.sample(&scratch.places, &mut scratch.samples);
         let mut centers = lock(&centers);
-        for ((x, y), sample) in in_turn(tile).zip(&scratch.samples) {
+        for ((x, y), sample) in pixels().zip(&scratch.samples) {
             *centers.at_mut(x, y) = *sample;
         }
     });

@@ -130,27 +130,26 @@ impl Known {
         self.pixels.within(part).filter(move |(_, pixel)| pixel.worth.exceeds(threshold))
     }
 
-    /// Takes out the pixels of a tile that are above the threshold, so that those close together are close in the list.
-    pub(super) fn choose(&mut self, tile: &Area, threshold: Threshold) -> Vec<Chosen> {
+    /// Takes the pixels of a tile that are above the threshold to the end of the list `chosen`, so that those close
+    /// together are close there.
+    pub(super) fn choose(&mut self, tile: &Area, threshold: Threshold, chosen: &mut Vec<Chosen>) {
         if !self.outlook(tile.x0, tile.y0).may_exceed(threshold) {
-            return Vec::new();
+            return;
         }
         let pixels = self.pixels.of_mut(tile);
-        let mut chosen = Vec::new();
         for (x, y) in in_turn(tile) {
             let pixel = &mut pixels[tile.place_of(x, y)];
             if pixel.worth.exceeds(threshold) && is_picked(threshold, x, y) {
                 chosen.push(Chosen { x, y, pixel: std::mem::take(pixel), has_changed: false });
             }
         }
-        chosen
     }
 
     /// Puts them back, with what became of them by the `threshold`.
     pub(super) fn put_back(
         &mut self,
         tile: &Area,
-        chosen: Vec<Chosen>,
+        chosen: impl Iterator<Item = Chosen>,
         centers: &Plane<Sample>,
         threshold: Threshold,
     ) {

@@ -48,7 +48,7 @@ use crate::{
 use picture::{picture_watched, progress_units};
 use plane::Area;
 use watch::Watch;
-use worker::Worker;
+use worker::{Worker, places_at_once};
 
 /// What the user may choose; the rest is the scene's.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -259,12 +259,14 @@ pub fn render_blocks(
         None => options.aa != AntiAliasing::None,
     };
     let hints = hints.and_then(|hints| hints.pixels);
+    let at_once = places_at_once(scene, area.len(), pool.current_num_threads());
     let block = |number: usize, place: &Tile, progress: &(dyn Fn(Progress) + Sync)| {
         let rays = Mutex::new(RayCounts::default());
         let new_sampler = || Worker {
             tracer: Tracer::new(scene, depth, tells_highlights),
             view,
             traced: Vec::new(),
+            at_once,
             hints: hints.as_ref(),
             counts: &rays,
         };

@@ -26,9 +26,6 @@ use crate::{
     color::Rgb,
 };
 
-/// Places that are sampled at a time.
-const BATCH: usize = 64;
-
 /// One ray through each centre.
 pub(super) fn centers<S: Sampler + Send>(crew: &Crew<S>, area: &Area) -> Picture {
     let mut centers = Plane::new(*area, Sample::default());
@@ -110,12 +107,12 @@ fn even<S: Sampler + Send>(
 ) -> Picture {
     let cells = Mutex::new(Plane::new(*area, Cell::default()));
     let (rays, count) = (count, count as usize);
-    let pixels_at_once = BATCH.div_ceil(count);
     crew.run(
         area,
         true,
         || false,
         |sampler, scratch, tile| {
+            let pixels_at_once = sampler.at_once().div_ceil(count);
             let mut own = vec![Cell::default(); tile.len()];
             let pixels: Vec<(i64, i64)> = in_turn(tile).collect();
             let mut seen = Vec::with_capacity(count);

@@ -233,7 +233,8 @@ impl Round<'_> {
             scratch.places.clear();
             scratch.samples.clear();
             let mut count = 0;
-            while count < rest.len() && scratch.places.len() < AT_ONCE {
+            let at_once = AT_ONCE.max(sampler.at_once());
+            while count < rest.len() && scratch.places.len() < at_once {
                 self.next_places(&chosen[rest[count]], &mut scratch.places);
                 count += 1;
             }

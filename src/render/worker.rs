@@ -9,14 +9,33 @@ use crate::{
     aa::Sample,
     camera::View,
     color::Rgb,
-    trace::{self, BATCH, Tracer},
+    scene::Scene,
+    trace::{self, BATCH, ENOUGH, Tracer},
 };
+
+/// Places that are sampled at once at most.
+const MOST_AT_ONCE: usize = 1 << 16;
+
+/// So many times as often does each thread sample a share of the picture at least, so that all end about the same time.
+const SHARES: usize = 6;
+
+/// For so many primitives a place is sampled beside those that are sampled at once.
+const PRIMITIVES: usize = 4;
+
+/// How many places are best sampled at once in a picture of so many pixels by so many threads: enough for shadow rays
+/// that leave neighbours in the picture for different things to find others that go their way.
+pub(super) fn places_at_once(scene: &Scene, pixels: usize, threads: usize) -> usize {
+    let dense = (scene.primitive_count() / PRIMITIVES).min(MOST_AT_ONCE);
+    let count = dense.min(pixels / (SHARES * threads));
+    if count < ENOUGH { BATCH } else { count }
+}
 
 /// Samples a scene through its camera; what it traced is added to `counts` in the end.
 pub(super) struct Worker<'a> {
     pub(super) tracer: Tracer<'a>,
     pub(super) view: View,
     pub(super) traced: Vec<trace::Sample>,
+    pub(super) at_once: usize,
     /// What is known to be in pixels, if there is anything.
     pub(super) hints: Option<&'a Plane<Hint>>,
     pub(super) counts: &'a Mutex<RayCounts>,
@@ -31,8 +50,12 @@ impl Sampler for Worker<'_> {
         self.hints.is_some()
     }
 
+    fn at_once(&self) -> usize {
+        self.at_once
+    }
+
     fn sample(&mut self, places: &[DVec2], samples: &mut Vec<Sample>) {
-        for some in places.chunks(BATCH) {
+        for some in places.chunks(self.at_once) {
             let dirs = some.iter().map(|place| self.view.direction(*place));
             self.tracer.trace(self.view.eye(), dirs, &mut self.traced);
             samples.extend(self.traced.iter().map(|traced| Sample {

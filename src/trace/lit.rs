@@ -1,5 +1,7 @@
 //! The hits of a batch that show their own colour, while the lights are added; a lane for each.
 
+use glam::DVec3;
+
 use super::{
     Batch, shadow,
     shadow::Passed,
@@ -22,6 +24,17 @@ type Singles = [f32; LANES];
 /// The inner part of a highlight is at least so bright, its middle being 1.
 const INNER: f32 = 0.5;
 
+/// What a hit asks of a light.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wish {
+    /// The part of what arrives that is to be scattered.
+    pub(super) scattered: f32,
+    /// The part that is mirrored to where the hit is seen from.
+    pub(super) shine: f32,
+    /// Whether that is the inner part of a highlight, of which signatures tell.
+    pub(super) is_inner: bool,
+}
+
 /// Hits and the light that they get.
 #[derive(Debug)]
 pub(super) struct Lit {
@@ -30,7 +43,7 @@ pub(super) struct Lit {
     /// The lanes in use.
     lanes: u64,
     pub(super) surfaces: SurfaceLanes,
-    path: [u32; LANES],
+    pub(super) path: [u32; LANES],
     /// The light that the texture scatters, and the highlights, channel by channel.
     diffuse: [Singles; 3],
     specular: [Singles; 3],
@@ -40,7 +53,7 @@ pub(super) struct Lit {
     exponent: Column,
     /// Towards the light at hand: the way from where rays start, the cosine of its angle to the normal, and to the
     /// mirror direction.
-    toward: Vectors,
+    pub(super) toward: Vectors,
     cosine: Column,
     mirrored: Column,
     passed: Passed,
@@ -103,6 +116,22 @@ impl Lit {
         self.path[k]
     }
 
+    /// The corners of the box about where the shadow rays start.
+    #[inline(always)]
+    pub(super) fn starts(&self) -> [DVec3; 2] {
+        let (mut min, mut max) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for axis in 0..3 {
+            let column = self.surfaces.start.axis(axis);
+            for k in hull(self.lanes) {
+                let is_in = self.lanes >> k & 1 != 0;
+                let (low, high) = (min[axis], max[axis]);
+                min[axis] = if is_in & (column[k] < low) { column[k] } else { low };
+                max[axis] = if is_in & (column[k] > high) { column[k] } else { high };
+            }
+        }
+        [min, max].map(DVec3::from_array)
+    }
+
     /// Turns to a light; returns the lanes that face it, hit by rays along `dir`.
     #[inline(always)]
     pub(super) fn face(&mut self, light: &Light, dir: &Vectors) -> u64 {
@@ -161,31 +190,74 @@ impl Lit {
 
     #[inline(always)]
     fn add_highlight(&mut self, k: usize, arriving: Rgb) {
-        if self.shine[k] > 0.0 && self.mirrored[k] > 0.0 {
-            let share = self.mirrored[k].powf(self.exponent[k]) as f32;
-            if self.tells_highlights && share > INNER {
-                self.path[k] = Path::of(self.path[k]).highlight().signature();
-            }
-            let shine = self.shine[k] * share;
+        let (shine, is_inner) = self.highlight(k);
+        if is_inner {
+            self.path[k] = Path::of(self.path[k]).highlight().signature();
+        }
+        if shine > 0.0 {
             for (channel, arriving) in self.specular.iter_mut().zip(arriving.to_array()) {
                 channel[k] += arriving * shine;
             }
         }
     }
 
+    /// The part of the light at hand that the hit of a lane mirrors to where it is seen from, if that arrives, and
+    /// whether signatures tell that it does.
+    #[inline(always)]
+    fn highlight(&self, k: usize) -> (f32, bool) {
+        if !(self.shine[k] > 0.0 && self.mirrored[k] > 0.0) {
+            return (0.0, false);
+        }
+        let share = self.mirrored[k].powf(self.exponent[k]) as f32;
+        (self.shine[k] * share, self.tells_highlights && share > INNER)
+    }
+
+    /// The light that the hit of a lane got so far, to be scattered and mirrored.
+    #[inline(always)]
+    pub(super) fn so_far(&self, k: usize) -> (Rgb, Rgb) {
+        let lane = |channels: &[Singles; 3]| Rgb::from_array(channels.each_ref().map(|c| c[k]));
+        (lane(&self.diffuse), lane(&self.specular))
+    }
+
+    /// What the hit of a lane asks of the light at hand.
+    #[inline(always)]
+    pub(super) fn wish(&self, k: usize) -> Wish {
+        let (shine, is_inner) = self.highlight(k);
+        Wish { scattered: self.scatter[k] * self.cosine[k] as f32, shine, is_inner }
+    }
+
     /// The light that the hit of a lane gives back, its signature, and a number of the cell of its pattern.
     #[inline(always)]
     pub(super) fn show(&self, k: usize, material: &Material) -> (Rgb, u32, u32) {
-        let lane = |channels: &[Singles; 3]| Rgb::from_array(channels.each_ref().map(|c| c[k]));
-        let (diffuse, mut light) = (lane(&self.diffuse), lane(&self.specular));
-        let (mut path, mut number) = (Path::of(self.path[k]), 0);
-        if diffuse != Rgb::ZERO && material.opacity > 0.0 {
-            let at = TexturePoint { uv: self.surfaces.uv[k], point: self.surfaces.point.get(k) };
-            let (color, cell) = material.texture.at(&at);
-            light += diffuse * color * self.surfaces.tint[k] * material.opacity;
-            path = path.cell(cell);
-            number = cell;
+        let (diffuse, specular) = self.so_far(k);
+        let pigment = if diffuse == Rgb::ZERO { None } else { self.pigment(k, material) };
+        shown(diffuse, specular, Path::of(self.path[k]), pigment)
+    }
+
+    /// The part of scattered light that the hit of a lane gives back, and the cell of its pattern; `None` if all goes
+    /// through.
+    #[inline(always)]
+    pub(super) fn pigment(&self, k: usize, material: &Material) -> Option<(Rgb, u32)> {
+        if !(material.opacity > 0.0) {
+            return None;
         }
-        (light, path.signature(), number)
+        let at = TexturePoint { uv: self.surfaces.uv[k], point: self.surfaces.point.get(k) };
+        let (color, cell) = material.texture.at(&at);
+        Some((color * self.surfaces.tint[k] * material.opacity, cell))
+    }
+}
+
+/// The light that a hit gives back that gets so much to scatter and mirrors so much, its signature, and a number of the
+/// cell of its pattern.
+#[inline(always)]
+pub(super) fn shown(
+    diffuse: Rgb,
+    specular: Rgb,
+    path: Path,
+    pigment: Option<(Rgb, u32)>,
+) -> (Rgb, u32, u32) {
+    match pigment {
+        Some((color, cell)) => (specular + diffuse * color, path.cell(cell).signature(), cell),
+        None => (specular, path.signature(), 0),
     }
 }

@@ -3,8 +3,9 @@
 //! The recursion is a work list of rays, each with the weight of its answer in its sample and its level, so the call
 //! stack stays flat however deep it goes. Rays are taken from the end of the list in batches of one level: those of a
 //! batch are traced together, then lit together light by light (module `lit`), because rays that start or end in one
-//! point are cheaper together. What a sample becomes does not depend on the batches: its parts are summed in fixed
-//! point (module `sum`), where order does not matter.
+//! point are cheaper together. Hits that are far from each other wait for others to be lit with (module `wavefront`).
+//! What a sample becomes does not depend on the batches: its parts are summed in fixed point (module `sum`), where order
+//! does not matter.
 
 pub mod classic;
 mod counts;
@@ -14,6 +15,7 @@ mod onward;
 mod shadow;
 mod signature;
 mod sum;
+mod wavefront;
 
 use glam::DVec3;
 
@@ -30,9 +32,16 @@ pub use counts::RayCounts;
 use lit::Lit;
 use signature::{Branch, Path};
 use sum::Sum;
+use wavefront::Wavefront;
 
 /// How many rays are traced together.
 pub const BATCH: usize = LANES;
+
+/// Hits of so few primitives are lit at once.
+const FEW: usize = 4;
+
+/// Of fewer samples than this, hits that wait would be too few to be near each other.
+pub(crate) const ENOUGH: usize = 1 << 10;
 
 /// The least weight in a sample of a hit whose cell counts.
 const WEIGHT_OF_CELLS: f32 = 0.25;
@@ -93,6 +102,15 @@ impl Gathered {
         self.color.add(light);
         self.signature = self.signature.wrapping_add(signature);
     }
+
+    /// Adds a hit that shows its own colour: the light that it gives back, its signature, and the cell of its pattern.
+    #[inline(always)]
+    fn add_hit(&mut self, task: &Task, light: Rgb, signature: u32, cell: u32) {
+        self.add(task.weight * light, signature);
+        if cell != 0 && task.weight.max_element() >= WEIGHT_OF_CELLS {
+            self.cell = self.cell.wrapping_add(task.path.cell(cell).signature());
+        }
+    }
 }
 
 /// The rays that are traced together, a lane for each, and what they are for.
@@ -117,6 +135,9 @@ pub struct Tracer<'a> {
     /// The rays taken from the list, and what becomes of them; in boxes, because they are large.
     batch: Box<Batch>,
     lit: Box<Lit>,
+    /// Whether hits that are far from each other wait for others.
+    waits: bool,
+    waiting: Wavefront,
     gathered: Vec<Gathered>,
 }
 
@@ -134,6 +155,8 @@ impl<'a> Tracer<'a> {
             tasks: Vec::new(),
             batch: Box::new(Batch { tasks, rays, met, hits }),
             lit: Box::new(Lit::new(tells_highlights)),
+            waits: false,
+            waiting: Wavefront::default(),
             gathered: Vec::new(),
         }
     }
@@ -143,32 +166,39 @@ impl<'a> Tracer<'a> {
         self.counts
     }
 
-    /// What up to [`BATCH`] camera rays from `eye` along `dirs`, in the scene's own coordinates, show; `samples` gets
-    /// one for each.
+    /// What camera rays from `eye` along `dirs`, in the scene's own coordinates, show; `samples` gets one for each.
     pub(crate) fn trace(
         &mut self,
         eye: DVec3,
-        dirs: impl ExactSizeIterator<Item = DVec3>,
+        mut dirs: impl ExactSizeIterator<Item = DVec3>,
         samples: &mut Vec<Sample>,
     ) {
-        let count = dirs.len().min(BATCH);
+        let (scene, all) = (self.scene, dirs.len());
         self.gathered.clear();
-        self.gathered.resize(count, Gathered::default());
-        if self.depth > 0 {
-            self.counts.camera += count as u64;
+        self.gathered.resize(all, Gathered::default());
+        self.waits = all >= ENOUGH;
+        let count = if self.depth > 0 { all } else { 0 };
+        self.counts.camera += count as u64;
+        for first in (0..count).step_by(BATCH) {
             let batch = &mut *self.batch;
-            for (k, dir) in dirs.take(BATCH).enumerate() {
+            batch.tasks.clear();
+            for (k, dir) in dirs.by_ref().take(BATCH).enumerate() {
                 batch.met.origin.set(k, eye);
                 batch.met.dir.set(k, dir);
             }
             batch.met.rest = Vectors::ZERO;
-            batch.tasks.clear();
             let task = |sample| Task { weight: Rgb::ONE, level: 1, sample, path: Path::START };
-            batch.tasks.extend((0..count as u32).map(task));
-            self.scene.accel().run(Run(self));
+            batch.tasks.extend((first as u32..count.min(first + BATCH) as u32).map(task));
+            self.run();
+            while self.take_batch() {
+                self.run();
+            }
+            if self.waiting.is_full() {
+                scene.accel().run(Finish(self));
+            }
         }
-        while self.take_batch() {
-            self.scene.accel().run(Run(self));
+        if self.waits {
+            scene.accel().run(Finish(self));
         }
         samples.clear();
         let sample = |g: &Gathered| Sample {
@@ -197,8 +227,18 @@ impl<'a> Tracer<'a> {
         true
     }
 
+    /// Traces the batch that was taken, and lights its hits now or later.
+    fn run(&mut self) {
+        let accel = self.scene.accel();
+        let mut lighting = Lighting::Done;
+        accel.run(Run(self, &mut lighting));
+        if lighting == Lighting::Later {
+            accel.run(Wait(self));
+        }
+    }
+
     #[inline(always)]
-    fn trace_batch(&mut self) {
+    fn trace_batch(&mut self) -> Lighting {
         let (scene, batch) = (self.scene, &mut *self.batch);
         let is_camera = batch.tasks[0].level == 1;
         let used = u64::MAX >> (LANES - batch.tasks.len());
@@ -225,15 +265,31 @@ impl<'a> Tracer<'a> {
             self.gathered[task.sample as usize].add(light, task.path.background());
         }
         self.lit.clear();
-        let mut open = hit;
+        let (mut open, mut primitives) = (hit, 0);
         while open != 0 {
+            primitives += 1;
             let primitive = self.batch.hits.primitive[open.trailing_zeros() as usize];
             let same = self.batch.hits.alike(open);
             open &= !same;
             self.meet(primitive, same, is_camera);
         }
+        if self.waits && primitives > FEW && self.is_scattered() {
+            return Lighting::Later;
+        }
         self.light();
         self.show();
+        Lighting::Done
+    }
+
+    /// Whether the hits to be lit are so far from each other that a light sees more primitives between them than one
+    /// each way, if these fill its view.
+    #[inline(always)]
+    fn is_scattered(&self) -> bool {
+        let Some(light) = self.scene.lights().first() else { return false };
+        let [min, max] = self.lit.starts();
+        let distance = (light.position - 0.5 * (min + max)).length();
+        let width = (max - min).max_element() / distance;
+        width * (self.scene.primitive_count() as f64).cbrt() > 1.0
     }
 
     /// Adds what the lights give to the hits that face them.
@@ -259,21 +315,67 @@ impl<'a> Tracer<'a> {
             let task = &self.batch.tasks[k];
             let material = self.scene.material(self.batch.hits.primitive[k]);
             let (light, signature, cell) = self.lit.show(k, material);
-            let gathered = &mut self.gathered[task.sample as usize];
-            gathered.add(task.weight * light, signature);
-            if cell != 0 && task.weight.max_element() >= WEIGHT_OF_CELLS {
-                gathered.cell = gathered.cell.wrapping_add(task.path.cell(cell).signature());
+            self.gathered[task.sample as usize].add_hit(task, light, signature, cell);
+        }
+    }
+
+    /// Keeps the lit hits, and the rays that they ask for, until there are more.
+    #[inline(always)]
+    fn wait(&mut self) {
+        let (scene, batch) = (self.scene, &*self.batch);
+        let (first, all) = (self.waiting.len(), self.lit.lanes());
+        for k in lanes(all) {
+            let hit = (batch.hits.primitive[k], batch.hits.face[k]);
+            let material = scene.material(hit.0);
+            self.waiting.push(&self.lit, k, &batch.tasks[k], hit, material);
+        }
+        for (number, light) in scene.lights().iter().enumerate() {
+            let asked = self.lit.face(light, &batch.met.dir);
+            self.counts.shadow += u64::from(asked.count_ones());
+            for k in lanes(asked) {
+                self.gathered[batch.tasks[k].sample as usize].rays += 1;
+                let before = (all & ((1 << k) - 1)).count_ones() as usize;
+                let wish = self.lit.wish(k);
+                self.waiting.ask(number, first + before, self.lit.toward.get(k), wish);
             }
         }
     }
 }
 
+/// The lit hits of a batch, to be kept.
+struct Wait<'t, 'a>(&'t mut Tracer<'a>);
+
+impl Work for Wait<'_, '_> {
+    #[inline(always)]
+    fn run(self) {
+        self.0.wait();
+    }
+}
+
+/// All hits that wait, to be lit.
+struct Finish<'t, 'a>(&'t mut Tracer<'a>);
+
+impl Work for Finish<'_, '_> {
+    #[inline(always)]
+    fn run(self) {
+        let Tracer { scene, waiting, gathered, .. } = self.0;
+        waiting.finish(scene, gathered);
+    }
+}
+
+/// When the hits of a batch are lit.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Lighting {
+    Done,
+    Later,
+}
+
 /// The batch that a tracer has taken, to be traced.
-struct Run<'t, 'a>(&'t mut Tracer<'a>);
+struct Run<'t, 'a>(&'t mut Tracer<'a>, &'t mut Lighting);
 
 impl Work for Run<'_, '_> {
     #[inline(always)]
     fn run(self) {
-        self.0.trace_batch();
+        *self.1 = self.0.trace_batch();
     }
 }

@@ -5,29 +5,39 @@ use std::num::NonZeroUsize;
 use whitted::{
     accel::Preset,
     render::RenderOptions,
-    scene::{Scene, builtin::builtin, load_builtin, load_builtin_of},
+    scene::{Scene, builtin::builtin, load_builtin_of},
 };
 
 use super::support::rendering;
 
+/// Scenes of few things and of many; with more threads, fewer of the many are sampled together.
 #[test]
 fn any_number_of_threads_gives_the_same_bytes() {
-    let scene = load_builtin("assignment").expect("a built-in scene");
-    let with_threads = |threads| {
-        let threads = NonZeroUsize::new(threads);
-        rendering(&scene, &RenderOptions { size: Some([203, 151]), threads, ..Default::default() })
-    };
-    let one = with_threads(1);
-    for threads in [2, 3, 7] {
-        let many = with_threads(threads);
-        assert_eq!(many.threads, threads);
-        let same = |a: &[f32; 3], b: &[f32; 3]| a.map(f32::to_bits) == b.map(f32::to_bits);
-        let pairs = one.film.pixels().iter().zip(many.film.pixels());
-        assert!(
-            pairs.into_iter().all(|(a, b)| same(&a.to_array(), &b.to_array())),
-            "{threads} threads"
-        );
-        assert_eq!(one.rays, many.rays, "{threads} threads");
+    for (name, objects, size, mode) in [
+        ("assignment", None, [203, 151], "adaptive"),
+        ("spheres", Some(10_000), [150, 150], "none"),
+        ("spheres", Some(10_000), [80, 80], "grid:2"),
+        ("spheres", Some(10_000), [150, 150], "adaptive:8"),
+    ] {
+        let scene = load_builtin_of(name, objects).expect("a built-in scene");
+        let aa = mode.parse().expect("a mode");
+        let with_threads = |threads| {
+            let threads = NonZeroUsize::new(threads);
+            let options = RenderOptions { size: Some(size), aa, threads, ..Default::default() };
+            rendering(&scene, &options)
+        };
+        let one = with_threads(1);
+        for threads in [2, 3, 7] {
+            let many = with_threads(threads);
+            assert_eq!(many.threads, threads);
+            let same = |a: &[f32; 3], b: &[f32; 3]| a.map(f32::to_bits) == b.map(f32::to_bits);
+            let pairs = one.film.pixels().iter().zip(many.film.pixels());
+            assert!(
+                pairs.into_iter().all(|(a, b)| same(&a.to_array(), &b.to_array())),
+                "{name} {mode}: {threads} threads"
+            );
+            assert_eq!(one.rays, many.rays, "{name} {mode}: {threads} threads");
+        }
     }
 }
 

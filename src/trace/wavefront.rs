@@ -1,0 +1,344 @@
+//! Hits that wait for the lights until they are many.
+//!
+//! Where many small things are in sight, neighbours in the picture are far from each other in space, and their rays
+//! towards a light share no nodes. Among thousands of hits, though, each has others that the light sees in nearly the
+//! same direction. So hits are kept, their rays towards each light are brought into the order of a Hilbert curve over
+//! the directions from that light, and neighbours on it are traced together.
+//!
+//! What becomes of a hit is, to the bit, what it would be at once.
+//!
+//! Source: that keeping rays until they are many makes incoherent ones coherent is the idea of Pharr, Kolb, Gershbein &
+//! Hanrahan, "Rendering complex scenes with memory-coherent ray tracing", *SIGGRAPH* (1997).
+
+use glam::DVec3;
+
+use super::{
+    Gathered, Task,
+    lit::{Lit, Wish, shown},
+    shadow::{self, Passed},
+    signature::{Path, light_word},
+};
+use crate::{
+    color::Rgb,
+    geometry::lanes::{Departures, HitLanes, LANES, RayLanes, SurfaceLanes, Vectors, lanes},
+    light::Light,
+    material::Material,
+    scene::Scene,
+};
+
+/// So many hits wait at most; with their rays they take about 25 MB.
+const MOST: usize = 1 << 17;
+
+/// Steps of the curve, each of which tells one more bit of both coordinates.
+const STEPS: u32 = 10;
+
+/// A hit and the light that it got so far.
+#[derive(Debug)]
+struct Waiting {
+    task: Task,
+    /// What the surface is, and where shadow rays leave it.
+    primitive: u32,
+    face: u8,
+    side: f32,
+    start: DVec3,
+    local: DVec3,
+    path: u32,
+    diffuse: Rgb,
+    specular: Rgb,
+    pigment: Option<(Rgb, u32)>,
+}
+
+/// A ray from a hit to a light.
+#[derive(Clone, Copy, Debug)]
+struct Ask {
+    /// Which hit.
+    hit: u32,
+    wish: Wish,
+    /// Which side of a cube about the light it comes through, and where, as slopes.
+    side: u8,
+    slopes: [f32; 2],
+}
+
+/// Hits, and the rays from them to each light.
+#[derive(Debug, Default)]
+pub(super) struct Wavefront {
+    hits: Vec<Waiting>,
+    /// The rays to each light.
+    asks: Vec<Vec<Ask>>,
+    /// Those to one light in the order in which they are traced: the place on the curve, and below it which ray.
+    order: Vec<u64>,
+    passed: Passed,
+    together: Option<Box<Together>>,
+}
+
+/// The rays that are traced together, a lane for each.
+#[derive(Debug)]
+struct Together {
+    dir: Vectors,
+    hits: HitLanes,
+    surfaces: SurfaceLanes,
+}
+
+impl Together {
+    const NONE: Self =
+        Self { dir: Vectors::ZERO, hits: HitLanes::NONE, surfaces: SurfaceLanes::NONE };
+}
+
+impl Wavefront {
+    /// Whether hits had better be lit before there are more.
+    pub(super) fn is_full(&self) -> bool {
+        self.hits.len() >= MOST
+    }
+
+    /// How many hits wait.
+    pub(super) fn len(&self) -> usize {
+        self.hits.len()
+    }
+
+    /// Takes the hit of a lane.
+    #[inline(always)]
+    pub(super) fn push(
+        &mut self,
+        lit: &Lit,
+        k: usize,
+        task: &Task,
+        (primitive, face): (u32, u8),
+        material: &Material,
+    ) {
+        let surfaces = &lit.surfaces;
+        let (diffuse, specular) = lit.so_far(k);
+        self.hits.push(Waiting {
+            task: *task,
+            primitive,
+            face,
+            side: surfaces.side[k] as f32,
+            start: surfaces.start.get(k),
+            local: surfaces.local.get(k),
+            path: lit.path[k],
+            diffuse,
+            specular,
+            pigment: lit.pigment(k, material),
+        });
+    }
+
+    /// Has a hit that waits ask for a light, the way to which is `toward`.
+    #[inline(always)]
+    pub(super) fn ask(&mut self, light: usize, hit: usize, toward: DVec3, wish: Wish) {
+        if self.asks.len() <= light {
+            self.asks.resize_with(light + 1, Vec::new);
+        }
+        let (side, slopes) = through_cube(-toward);
+        self.asks[light].push(Ask { hit: hit as u32, wish, side, slopes });
+    }
+
+    /// Lights all hits that wait, and gives what they show to their samples.
+    #[inline(always)]
+    pub(super) fn finish(&mut self, scene: &Scene, gathered: &mut [Gathered]) {
+        for (number, light) in scene.lights().iter().enumerate() {
+            let Some(asks) = self.asks.get_mut(number) else { break };
+            let (asks, mut order) = (std::mem::take(asks), std::mem::take(&mut self.order));
+            put_in_order(&asks, &mut order);
+            for some in order.chunks(LANES) {
+                self.light(scene, light, &asks, some);
+            }
+            (self.order, self.asks[number]) = (order, asks);
+            self.asks[number].clear();
+        }
+        for hit in self.hits.drain(..) {
+            let Waiting { task, diffuse, specular, path, pigment, .. } = hit;
+            let pigment = pigment.filter(|_| diffuse != Rgb::ZERO);
+            let (light, signature, cell) = shown(diffuse, specular, Path::of(path), pigment);
+            gathered[task.sample as usize].add_hit(&task, light, signature, cell);
+        }
+    }
+
+    /// Adds what arrives of a light at the hits that ask for it.
+    #[inline(always)]
+    fn light(&mut self, scene: &Scene, light: &Light, asks: &[Ask], order: &[u64]) {
+        let Together { dir, hits, surfaces } =
+            &mut **self.together.get_or_insert_with(|| Box::new(Together::NONE));
+        let used = u64::MAX >> (LANES - order.len());
+        for (k, number) in order.iter().enumerate() {
+            let hit = &self.hits[asks[*number as u32 as usize].hit as usize];
+            (hits.primitive[k], hits.face[k]) = (hit.primitive, hit.face);
+            surfaces.start.set(k, hit.start);
+            surfaces.local.set(k, hit.local);
+            surfaces.side[k] = f64::from(hit.side);
+            dir.set(k, light.position - hit.start);
+        }
+        let from = Some(Departures { hits, surfaces });
+        let rays = RayLanes { origin: &surfaces.start, dir, from, used };
+        let seen = used & !shadow::cast(scene, &rays, light.position, &mut self.passed);
+        for k in lanes(seen) {
+            let Ask { hit, wish, .. } = &asks[order[k] as u32 as usize];
+            let hit = &mut self.hits[*hit as usize];
+            let (mut arriving, mut passed) = (light.intensity, 0);
+            if self.passed.lanes() >> k & 1 != 0 {
+                let transmittance;
+                (transmittance, passed) = self.passed.through(scene, k);
+                if transmittance == Rgb::ZERO {
+                    continue;
+                }
+                arriving *= transmittance;
+            }
+            let mut path = Path::of(hit.path).light(light_word(light, passed));
+            if wish.is_inner {
+                path = path.highlight();
+            }
+            hit.path = path.signature();
+            hit.diffuse += arriving * wish.scattered;
+            hit.specular += arriving * wish.shine;
+        }
+    }
+}
+
+/// The side of a cube about the origin through which a direction leads, and where, as slopes.
+#[inline(always)]
+fn through_cube(dir: DVec3) -> (u8, [f32; 2]) {
+    let size = dir.abs();
+    let (axis, along, others) = if size.x >= size.y && size.x >= size.z {
+        (0, dir.x, [dir.y, dir.z])
+    } else if size.y >= size.z {
+        (1, dir.y, [dir.x, dir.z])
+    } else {
+        (2, dir.z, [dir.x, dir.y])
+    };
+    (2 * axis + u8::from(along < 0.0), others.map(|other| (other / along.abs()) as f32))
+}
+
+/// Puts the numbers of the rays `asks` in the order of Hilbert curves over the parts of the cube's sides through which
+/// they come; each is in the lower half of an entry.
+#[inline(always)]
+fn put_in_order(asks: &[Ask], order: &mut Vec<u64>) {
+    let mut ranges = [[[f32::INFINITY, f32::NEG_INFINITY]; 2]; 6];
+    for ask in asks {
+        for (range, slope) in ranges[usize::from(ask.side)].iter_mut().zip(ask.slopes) {
+            *range = [range[0].min(slope), range[1].max(slope)];
+        }
+    }
+    let last = ((1 << STEPS) - 1) as f32;
+    let scales = ranges.map(|side| side.map(|[from, to]| last / (to - from)));
+    order.clear();
+    for (group, some) in asks.chunks(LANES).enumerate() {
+        let mut cells = [[0; LANES]; 2];
+        for (k, ask) in some.iter().enumerate() {
+            let side = usize::from(ask.side);
+            // Where all slopes are the same, the scale is infinite and the product no number, which counts as 0.
+            let cell =
+                |axis: usize| (ask.slopes[axis] - ranges[side][axis][0]) * scales[side][axis];
+            (cells[0][k], cells[1][k]) = (cell(0) as u32, cell(1) as u32);
+        }
+        let along = along_curve(&cells);
+        order.extend(some.iter().zip(along).enumerate().map(|(k, (ask, along))| {
+            let place = u64::from(ask.side) << (2 * STEPS) | u64::from(along);
+            place << 32 | (group * LANES + k) as u64
+        }));
+    }
+    order.sort_unstable();
+}
+
+/// The places of cells, by column and row, on the Hilbert curve through a square of 2^[`STEPS`] cells a side.
+///
+/// Source: Warren, "Hacker's Delight" (2nd edition, 2012), figure 16-8.
+#[inline(always)]
+fn along_curve([x, y]: &[[u32; LANES]; 2]) -> [u32; LANES] {
+    let (mut state, mut place) = ([0; LANES], [0; LANES]);
+    for step in (0..STEPS).rev() {
+        for k in 0..LANES {
+            let row = (4 * state[k]) | (2 * (x[k] >> step & 1)) | (y[k] >> step & 1);
+            place[k] = place[k] << 2 | 0x361e_9cb4 >> (2 * row) & 3;
+            state[k] = 0x8fe6_5831 >> (2 * row) & 3;
+        }
+    }
+    place
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec2;
+
+    use super::*;
+    use crate::{
+        math::random::SplitMix64,
+        scene::{LoadOptions, load},
+        trace::{BATCH, Sample, Tracer},
+    };
+
+    /// Oracle: the same rays in lists so short that no hit waits.
+    #[test]
+    fn hits_that_wait_show_what_they_show_at_once() {
+        const SIDE: u32 = 48;
+        let options = LoadOptions { objects: Some(20_000), ..LoadOptions::default() };
+        let scene = load("spheres", &options).expect("a scene").scene;
+        let view = scene.camera().view(SIDE, SIDE);
+        let dirs: Vec<DVec3> = (0..SIDE * SIDE)
+            .map(|k| view.direction(DVec2::new(f64::from(k % SIDE), f64::from(k / SIDE)) + 0.5))
+            .collect();
+        for tells_highlights in [false, true] {
+            let trace = |at_once: usize| {
+                let mut tracer = Tracer::new(&scene, scene.depth(), tells_highlights);
+                let (mut all, mut some): (Vec<Sample>, _) = (Vec::new(), Vec::new());
+                for dirs in dirs.chunks(at_once) {
+                    tracer.trace(view.eye(), dirs.iter().copied(), &mut some);
+                    all.extend_from_slice(&some);
+                }
+                let waited = tracer.waiting.together.is_some();
+                (waited, all, tracer.counts())
+            };
+            let (waited, waiting, counts) = trace(dirs.len());
+            let (_, at_once, expected) = trace(BATCH);
+            assert!(waited && counts.reflected > 0 && counts.refracted > 0);
+            assert_eq!(counts, expected);
+            let differ = waiting.iter().zip(&at_once).filter(|(a, b)| a != b).count();
+            assert_eq!((waiting.len(), differ), (at_once.len(), 0));
+        }
+    }
+
+    /// Oracle: the definition. The curve visits each cell once, and goes on to one beside it.
+    #[test]
+    fn the_curve_goes_from_cell_to_cell() {
+        let side = 1 << STEPS;
+        let mut cells = vec![None; (side * side) as usize];
+        for y in 0..side {
+            for x in (0..side).step_by(LANES) {
+                let row = std::array::from_fn(|k| x + k as u32);
+                for (k, place) in along_curve(&[row, [y; LANES]]).into_iter().enumerate() {
+                    assert_eq!(cells[place as usize].replace((row[k], y)), None);
+                }
+            }
+        }
+        let cells: Vec<(u32, u32)> = cells.into_iter().map(|cell| cell.expect("visited")).collect();
+        let is_step = |pair: &[(u32, u32)]| {
+            pair[0].0.abs_diff(pair[1].0) + pair[0].1.abs_diff(pair[1].1) == 1
+        };
+        assert!(cells.windows(2).all(is_step));
+    }
+
+    /// Oracle: each number once, and each side of the cube in one piece; also of rays that go nowhere, or all the same
+    /// way.
+    #[test]
+    fn the_order_has_each_ray_once() {
+        let mut random = SplitMix64::new(3);
+        let mut vector =
+            || DVec3::from_array(std::array::from_fn(|_| 2.0 * random.uniform() - 1.0));
+        let ask = |dir: DVec3| {
+            let (side, slopes) = through_cube(dir);
+            let wish = Wish { scattered: 0.0, shine: 0.0, is_inner: false };
+            Ask { hit: 0, wish, side, slopes }
+        };
+        let any: Vec<Ask> = (0..1000).map(|_| ask(vector())).collect();
+        let one_way = vec![ask(DVec3::new(1.0, 2.0, 3.0)); 100];
+        let with_nowhere: Vec<Ask> =
+            any.iter().copied().chain([ask(DVec3::ZERO), ask(DVec3::NAN)]).collect();
+        for (asks, sides) in [(any, 6), (one_way, 1), (with_nowhere, 6)] {
+            let mut order = Vec::new();
+            put_in_order(&asks, &mut order);
+            let mut numbers: Vec<usize> = order.iter().map(|x| *x as u32 as usize).collect();
+            let mut pieces: Vec<u8> = numbers.iter().map(|k| asks[*k].side).collect();
+            pieces.dedup();
+            assert_eq!(pieces.len(), sides);
+            numbers.sort_unstable();
+            assert!(numbers.into_iter().eq(0..asks.len()));
+        }
+    }
+}
