@@ -102,7 +102,7 @@ impl Adaptive {
             stop: &stop,
         };
         // The first samples of a pixel are four and more.
-        let group = crew.tiles_at_once(4);
+        let group = crew.tiles_at_once(4.0 * threshold.share());
         crew.run_groups(area, group, counted, &stop, |sampler, scratch, tiles| {
             let (mut chosen, mut counts) = (Vec::new(), Vec::with_capacity(tiles.len()));
             for tile in tiles {
@@ -149,30 +149,39 @@ impl Adaptive {
             let (x, y) = (x.clamp(area.x0, area.x1 - 1), y.clamp(area.y0, area.y1 - 1));
             self.known.outlook(x, y).may_exceed(threshold)
         };
-        crew.run(self.corners.area(), false, stop, |sampler, scratch, tile| {
-            let (left, top) = (tile.x0 - 1, tile.y0 - 1);
-            if ![(tile.x0, tile.y0), (left, tile.y0), (tile.x0, top), (left, top)]
+        let group = crew.tiles_at_once(1.0);
+        crew.run_groups(self.corners.area(), group, false, stop, |sampler, scratch, tiles| {
+            let is_asked = |tile: &&Area| {
+                let (left, top) = (tile.x0 - 1, tile.y0 - 1);
+                [(tile.x0, tile.y0), (left, tile.y0), (tile.x0, top), (left, top)]
+                    .iter()
+                    .any(|&(x, y)| may_exceed(x, y))
+            };
+            let wanted: Vec<(Area, Vec<(i64, i64)>)> = tiles
                 .iter()
-                .any(|&(x, y)| may_exceed(x, y))
-            {
-                return;
-            }
-            let wanted = self.wanted_corners(tile, threshold);
+                .filter(is_asked)
+                .map(|tile| (*tile, self.wanted_corners(tile, threshold)))
+                .filter(|(_, wanted)| !wanted.is_empty())
+                .collect();
             if wanted.is_empty() {
                 return;
             }
+            let places = wanted.iter().flat_map(|(_, wanted)| wanted);
             scratch.places.clear();
-            scratch.places.extend(wanted.iter().map(|&(x, y)| DVec2::new(x as f64, y as f64)));
-            let mut samples = Vec::with_capacity(wanted.len());
+            scratch.places.extend(places.map(|&(x, y)| DVec2::new(x as f64, y as f64)));
+            let mut samples = Vec::with_capacity(scratch.places.len());
             sampler.sample(&scratch.places, &mut samples);
             add_rays(&self.spent, &samples);
-            lock(&traced).push((*tile, wanted, samples));
+            lock(&traced).push((wanted, samples));
         });
-        for (tile, wanted, samples) in traced.into_inner().unwrap_or_else(PoisonError::into_inner) {
-            let corners = self.corners.of_mut(&tile);
-            corners.resize(tile.len(), Sample::default());
-            for ((x, y), sample) in wanted.into_iter().zip(samples) {
-                corners[tile.place_of(x, y)] = sample;
+        for (wanted, samples) in traced.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            let mut samples = samples.into_iter();
+            for (tile, wanted) in wanted {
+                let corners = self.corners.of_mut(&tile);
+                corners.resize(tile.len(), Sample::default());
+                for ((x, y), sample) in wanted.into_iter().zip(samples.by_ref()) {
+                    corners[tile.place_of(x, y)] = sample;
+                }
             }
         }
     }

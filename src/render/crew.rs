@@ -69,10 +69,15 @@ impl<'a> Meter<'a> {
     }
 }
 
+/// Each thread gets at least so many groups of tiles, so that all end about the same time.
+const SHARES: usize = 4;
+
 /// The workers.
 pub(super) struct Crew<'a, S> {
-    pub(super) new_sampler: &'a (dyn Fn() -> S + Sync),
+    new_sampler: &'a (dyn Fn() -> S + Sync),
     pub(super) meter: &'a Meter<'a>,
+    /// As [`Sampler::at_once`].
+    at_once: usize,
 }
 
 /// Lists that a worker keeps from tile to tile.
@@ -82,11 +87,20 @@ pub(super) struct Scratch {
     pub(super) samples: Vec<Sample>,
 }
 
-impl<S: Sampler + Send> Crew<'_, S> {
-    /// How many tiles are best sampled together, if each pixel gets so many samples.
-    pub(super) fn tiles_at_once(&self, samples: usize) -> usize {
-        let tile = (TILE_SIDE * TILE_SIDE) as usize * samples;
-        ((self.new_sampler)().at_once() / tile).max(1)
+impl<'a, S: Sampler + Send> Crew<'a, S> {
+    pub(super) fn new(new_sampler: &'a (dyn Fn() -> S + Sync), meter: &'a Meter<'a>) -> Self {
+        Self { new_sampler, meter, at_once: new_sampler().at_once() }
+    }
+
+    /// Whether anything is known to be in any pixel, as [`Sampler::has_hints`].
+    pub(super) fn has_hints(&self) -> bool {
+        (self.new_sampler)().has_hints()
+    }
+
+    /// How many tiles are best sampled together, if a pixel gets so many samples.
+    pub(super) fn tiles_at_once(&self, samples: f32) -> usize {
+        let tile = (TILE_SIDE * TILE_SIDE) as f32 * samples;
+        ((self.at_once as f32 / tile) as usize).max(1)
     }
 
     /// Lets the workers do `work` on every tile of `area`; `counted` is whether a tile's pixels count as done.
@@ -104,7 +118,7 @@ impl<S: Sampler + Send> Crew<'_, S> {
         });
     }
 
-    /// As [`Crew::run`], with up to `count` tiles at once.
+    /// As [`Crew::run`], with up to `count` tiles at once, which are neighbours.
     pub(super) fn run_groups(
         &self,
         area: &Area,
@@ -115,7 +129,9 @@ impl<S: Sampler + Send> Crew<'_, S> {
     ) {
         let idle: Mutex<Vec<(S, Scratch)>> = Mutex::new(Vec::new());
         let idle = || lock(&idle);
-        area.tiles().par_chunks(count).with_max_len(1).for_each(|tiles| {
+        let tiles = area.tiles();
+        let fair = tiles.len() / (SHARES * rayon::current_num_threads());
+        tiles.par_chunks(count.min(fair).max(1)).with_max_len(1).for_each(|tiles| {
             if stop() {
                 return;
             }
@@ -177,7 +193,7 @@ pub(super) fn trace_centers<S: Sampler + Send>(
     stop: impl Fn() -> bool + Sync,
 ) {
     let area = *centers.area();
-    let group = crew.tiles_at_once(1);
+    let group = crew.tiles_at_once(1.0);
     let centers = Mutex::new(centers);
     crew.run_groups(&area, group, true, stop, |sampler, scratch, tiles| {
         let untraced: Vec<&Area> =

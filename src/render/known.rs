@@ -59,7 +59,7 @@ impl Known {
         least: Threshold,
     ) {
         let area = *self.pixels.area();
-        let has_hints = (crew.new_sampler)().has_hints();
+        let has_hints = crew.has_hints();
         let of_one_color = Mutex::new(Vec::new());
         let known = Mutex::new(&mut *self);
         let never = || false;

@@ -259,7 +259,7 @@ pub fn render_blocks(
         None => options.aa != AntiAliasing::None,
     };
     let hints = hints.and_then(|hints| hints.pixels);
-    let at_once = places_at_once(scene, area.len(), pool.current_num_threads());
+    let at_once = places_at_once(scene);
     let block = |number: usize, place: &Tile, progress: &(dyn Fn(Progress) + Sync)| {
         let rays = Mutex::new(RayCounts::default());
         let new_sampler = || Worker {

@@ -75,7 +75,7 @@ pub(super) fn picture_watched<S: Sampler + Send>(
     let area = Area::of(part);
     let started = Instant::now();
     let meter = Meter::new(progress_units(aa, goal) * area.len() as u64, progress);
-    let crew = Crew { new_sampler, meter: &meter };
+    let crew = Crew::new(new_sampler, &meter);
     match aa {
         AntiAliasing::None | AntiAliasing::Grid { side: 1 } => plain::centers(&crew, &area),
         AntiAliasing::Grid { side } => plain::grid(&crew, &area, side),

@@ -107,23 +107,28 @@ fn even<S: Sampler + Send>(
 ) -> Picture {
     let cells = Mutex::new(Plane::new(*area, Cell::default()));
     let (rays, count) = (count, count as usize);
-    crew.run(
+    let group = crew.tiles_at_once(count as f32);
+    crew.run_groups(
         area,
+        group,
         true,
         || false,
-        |sampler, scratch, tile| {
+        |sampler, scratch, tiles| {
             let pixels_at_once = sampler.at_once().div_ceil(count);
-            let mut own = vec![Cell::default(); tile.len()];
-            let pixels: Vec<(i64, i64)> = in_turn(tile).collect();
+            let mut own: Vec<Vec<Cell>> =
+                tiles.iter().map(|tile| vec![Cell::default(); tile.len()]).collect();
+            let of_tile = |(k, tile)| in_turn(tile).map(move |(x, y)| (k, x, y));
+            let pixels: Vec<(usize, i64, i64)> =
+                tiles.iter().enumerate().flat_map(of_tile).collect();
             let mut seen = Vec::with_capacity(count);
             for some in pixels.chunks(pixels_at_once) {
                 scratch.places.clear();
                 scratch.samples.clear();
-                for (x, y) in some {
+                for (_, x, y) in some {
                     pixel_places(*x, *y, &mut scratch.places);
                 }
                 sampler.sample(&scratch.places, &mut scratch.samples);
-                for ((x, y), samples) in some.iter().zip(scratch.samples.chunks(count)) {
+                for ((k, x, y), samples) in some.iter().zip(scratch.samples.chunks(count)) {
                     seen.clear();
                     seen.extend(samples.iter().map(|sample| levels(sample.color)));
                     let mut spread = Spread::about(seen[0]);
@@ -141,7 +146,7 @@ fn even<S: Sampler + Send>(
                     } else {
                         0.0
                     };
-                    own[tile.place_of(*x, *y)] = Cell {
+                    own[*k][tiles[*k].place_of(*x, *y)] = Cell {
                         color,
                         error: judge(&seen, &spread),
                         signature: only.unwrap_or((x * 31 + y * 17) as u32),
@@ -151,7 +156,10 @@ fn even<S: Sampler + Send>(
                     };
                 }
             }
-            lock(&cells).put(tile, own);
+            let mut cells = lock(&cells);
+            for (tile, own) in tiles.iter().zip(own) {
+                cells.put(tile, own);
+            }
         },
     );
     let cells = cells.into_inner().unwrap_or_else(PoisonError::into_inner);

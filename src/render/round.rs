@@ -21,8 +21,8 @@ use crate::{
     color::Rgb,
 };
 
-/// Samples that are taken without looking at the clock.
-const AT_ONCE: usize = 512;
+/// Samples that are taken without looking at the clock: at least and at most.
+const AT_ONCE: [usize; 2] = [1 << 9, 1 << 14];
 
 /// So many times as few samples meet a highlight as tell how bright it is: its flanks show as well.
 const SOONER: u32 = 8;
@@ -40,6 +40,14 @@ pub(super) enum Threshold {
 }
 
 impl Threshold {
+    /// The share of the pixels for which it is.
+    pub(super) fn share(self) -> f32 {
+        match self {
+            Self::PerRayOfSome(_, share, _) => share.min(1.0),
+            Self::Error(_) | Self::PerRay(_) => 1.0,
+        }
+    }
+
     /// Whether pixels above it go on until they are below or may get no more, so that what their samples were is not
     /// asked again.
     pub(super) fn is_final(self) -> bool {
@@ -233,7 +241,8 @@ impl Round<'_> {
             scratch.places.clear();
             scratch.samples.clear();
             let mut count = 0;
-            let at_once = AT_ONCE.max(sampler.at_once());
+            let [least, most] = AT_ONCE;
+            let at_once = sampler.at_once().clamp(least, most);
             while count < rest.len() && scratch.places.len() < at_once {
                 self.next_places(&chosen[rest[count]], &mut scratch.places);
                 count += 1;

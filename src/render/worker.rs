@@ -13,20 +13,16 @@ use crate::{
     trace::{self, BATCH, ENOUGH, Tracer},
 };
 
-/// Places that are sampled at once at most.
+/// More places at once would gain little, and be long without a look at the clock.
 const MOST_AT_ONCE: usize = 1 << 16;
 
-/// So many times as often does each thread sample a share of the picture at least, so that all end about the same time.
-const SHARES: usize = 6;
-
-/// For so many primitives a place is sampled beside those that are sampled at once.
+/// One place at once for so many primitives.
 const PRIMITIVES: usize = 4;
 
-/// How many places are best sampled at once in a picture of so many pixels by so many threads: enough for shadow rays
-/// that leave neighbours in the picture for different things to find others that go their way.
-pub(super) fn places_at_once(scene: &Scene, pixels: usize, threads: usize) -> usize {
-    let dense = (scene.primitive_count() / PRIMITIVES).min(MOST_AT_ONCE);
-    let count = dense.min(pixels / (SHARES * threads));
+/// How many places of a picture of `scene` are best sampled at once: enough for shadow rays from neighbours in the
+/// picture that are far from each other in space to find others that go their way.
+pub(super) fn places_at_once(scene: &Scene) -> usize {
+    let count = (scene.primitive_count() / PRIMITIVES).min(MOST_AT_ONCE);
     if count < ENOUGH { BATCH } else { count }
 }
 
@@ -55,7 +51,9 @@ impl Sampler for Worker<'_> {
     }
 
     fn sample(&mut self, places: &[DVec2], samples: &mut Vec<Sample>) {
-        for some in places.chunks(self.at_once) {
+        // Where hits do not wait for each other, short lists stay in the caches.
+        let at_once = if self.at_once > BATCH { places.len().max(1) } else { BATCH };
+        for some in places.chunks(at_once) {
             let dirs = some.iter().map(|place| self.view.direction(*place));
             self.tracer.trace(self.view.eye(), dirs, &mut self.traced);
             samples.extend(self.traced.iter().map(|traced| Sample {

@@ -26,6 +26,7 @@ use crate::{
         Ray,
         lanes::{HitLanes, LANES, MetLanes, RayLanes, Vectors, lanes},
     },
+    light::Light,
     scene::Scene,
 };
 pub use counts::RayCounts;
@@ -156,7 +157,7 @@ impl<'a> Tracer<'a> {
             batch: Box::new(Batch { tasks, rays, met, hits }),
             lit: Box::new(Lit::new(tells_highlights)),
             waits: false,
-            waiting: Wavefront::default(),
+            waiting: Wavefront::new(),
             gathered: Vec::new(),
         }
     }
@@ -192,9 +193,6 @@ impl<'a> Tracer<'a> {
             self.run();
             while self.take_batch() {
                 self.run();
-            }
-            if self.waiting.is_full() {
-                scene.accel().run(Finish(self));
             }
         }
         if self.waits {
@@ -232,8 +230,12 @@ impl<'a> Tracer<'a> {
         let accel = self.scene.accel();
         let mut lighting = Lighting::Done;
         accel.run(Run(self, &mut lighting));
+        // By itself, since what tracing a batch has in registers is not to make room for it.
         if lighting == Lighting::Later {
             accel.run(Wait(self));
+        }
+        if self.waiting.is_full() {
+            accel.run(Finish(self));
         }
     }
 
@@ -281,15 +283,15 @@ impl<'a> Tracer<'a> {
         Lighting::Done
     }
 
-    /// Whether the hits to be lit are so far from each other that a light sees more primitives between them than one
+    /// Whether the hits to be lit are so far from each other that some light sees more primitives between them than one
     /// each way, if these fill its view.
     #[inline(always)]
     fn is_scattered(&self) -> bool {
-        let Some(light) = self.scene.lights().first() else { return false };
         let [min, max] = self.lit.starts();
-        let distance = (light.position - 0.5 * (min + max)).length();
-        let width = (max - min).max_element() / distance;
-        width * (self.scene.primitive_count() as f64).cbrt() > 1.0
+        let (middle, size) = (0.5 * (min + max), (max - min).max_element());
+        let across = size * (self.scene.primitive_count() as f64).cbrt();
+        let is_near = |light: &Light| across > (light.position - middle).length();
+        self.scene.lights().iter().any(is_near)
     }
 
     /// Adds what the lights give to the hits that face them.

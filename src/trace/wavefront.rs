@@ -26,8 +26,8 @@ use crate::{
     scene::Scene,
 };
 
-/// So many hits wait at most; with their rays they take about 25 MB.
-const MOST: usize = 1 << 17;
+/// About so much memory do hits that wait and their rays take at most.
+const MOST_BYTES: usize = 24 << 20;
 
 /// Steps of the curve, each of which tells one more bit of both coordinates.
 const STEPS: u32 = 10;
@@ -39,7 +39,7 @@ struct Waiting {
     /// What the surface is, and where shadow rays leave it.
     primitive: u32,
     face: u8,
-    side: f32,
+    inside: bool,
     start: DVec3,
     local: DVec3,
     path: u32,
@@ -60,11 +60,14 @@ struct Ask {
 }
 
 /// Hits, and the rays from them to each light.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Wavefront {
     hits: Vec<Waiting>,
     /// The rays to each light.
     asks: Vec<Vec<Ask>>,
+    /// The bytes of all these, and of how many they are full.
+    bytes: usize,
+    most: usize,
     /// Those to one light in the order in which they are traced: the place on the curve, and below it which ray.
     order: Vec<u64>,
     passed: Passed,
@@ -85,9 +88,21 @@ impl Together {
 }
 
 impl Wavefront {
-    /// Whether hits had better be lit before there are more.
+    pub(super) fn new() -> Self {
+        Self {
+            hits: Vec::new(),
+            asks: Vec::new(),
+            bytes: 0,
+            most: MOST_BYTES,
+            order: Vec::new(),
+            passed: Passed::default(),
+            together: None,
+        }
+    }
+
+    /// Whether hits are to be lit before there are more.
     pub(super) fn is_full(&self) -> bool {
-        self.hits.len() >= MOST
+        self.bytes >= self.most
     }
 
     /// How many hits wait.
@@ -107,11 +122,12 @@ impl Wavefront {
     ) {
         let surfaces = &lit.surfaces;
         let (diffuse, specular) = lit.so_far(k);
+        self.bytes += size_of::<Waiting>();
         self.hits.push(Waiting {
             task: *task,
             primitive,
             face,
-            side: surfaces.side[k] as f32,
+            inside: surfaces.is_inside(k),
             start: surfaces.start.get(k),
             local: surfaces.local.get(k),
             path: lit.path[k],
@@ -128,6 +144,7 @@ impl Wavefront {
             self.asks.resize_with(light + 1, Vec::new);
         }
         let (side, slopes) = through_cube(-toward);
+        self.bytes += size_of::<Ask>();
         self.asks[light].push(Ask { hit: hit as u32, wish, side, slopes });
     }
 
@@ -144,6 +161,7 @@ impl Wavefront {
             (self.order, self.asks[number]) = (order, asks);
             self.asks[number].clear();
         }
+        self.bytes = 0;
         for hit in self.hits.drain(..) {
             let Waiting { task, diffuse, specular, path, pigment, .. } = hit;
             let pigment = pigment.filter(|_| diffuse != Rgb::ZERO);
@@ -163,7 +181,7 @@ impl Wavefront {
             (hits.primitive[k], hits.face[k]) = (hit.primitive, hit.face);
             surfaces.start.set(k, hit.start);
             surfaces.local.set(k, hit.local);
-            surfaces.side[k] = f64::from(hit.side);
+            surfaces.side[k] = if hit.inside { -1.0 } else { 1.0 };
             dir.set(k, light.position - hit.start);
         }
         let from = Some(Departures { hits, surfaces });
@@ -275,8 +293,9 @@ mod tests {
             .map(|k| view.direction(DVec2::new(f64::from(k % SIDE), f64::from(k / SIDE)) + 0.5))
             .collect();
         for tells_highlights in [false, true] {
-            let trace = |at_once: usize| {
+            let trace = |at_once: usize, most: usize| {
                 let mut tracer = Tracer::new(&scene, scene.depth(), tells_highlights);
+                tracer.waiting.most = most;
                 let (mut all, mut some): (Vec<Sample>, _) = (Vec::new(), Vec::new());
                 for dirs in dirs.chunks(at_once) {
                     tracer.trace(view.eye(), dirs.iter().copied(), &mut some);
@@ -285,12 +304,15 @@ mod tests {
                 let waited = tracer.waiting.together.is_some();
                 (waited, all, tracer.counts())
             };
-            let (waited, waiting, counts) = trace(dirs.len());
-            let (_, at_once, expected) = trace(BATCH);
-            assert!(waited && counts.reflected > 0 && counts.refracted > 0);
-            assert_eq!(counts, expected);
-            let differ = waiting.iter().zip(&at_once).filter(|(a, b)| a != b).count();
-            assert_eq!((waiting.len(), differ), (at_once.len(), 0));
+            let (_, at_once, expected) = trace(BATCH, usize::MAX);
+            // All at the end, and some whenever there is no more room.
+            for most in [usize::MAX, 1 << 14] {
+                let (waited, waiting, counts) = trace(dirs.len(), most);
+                assert!(waited && counts.reflected > 0 && counts.refracted > 0);
+                assert_eq!(counts, expected);
+                let differ = waiting.iter().zip(&at_once).filter(|(a, b)| a != b).count();
+                assert_eq!((waiting.len(), differ), (at_once.len(), 0), "{most}");
+            }
         }
     }
 

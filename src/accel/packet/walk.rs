@@ -104,8 +104,8 @@ impl Packet {
         }
     }
 
-    /// Has `searches` try the primitives of a leaf with the rays of the lanes `met`, or those in the lanes `near` of a
-    /// leaf of spheres.
+    /// Has `searches` try the primitives of a leaf with the rays of the lanes `met`; `near` tells which spheres of the
+    /// leaf the beam may meet.
     #[inline(always)]
     fn leaf<S: Simd>(
         &mut self,

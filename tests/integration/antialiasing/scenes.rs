@@ -134,12 +134,15 @@ fn what_is_said_of_the_error_is_true() {
     assert!(close * 10 >= all * 9, "{close} of {all}\n{report}");
 }
 
-/// A part of a picture is that part of the picture, in every mode.
+/// A part of a picture is that part of the picture, in every mode; also of things so many that what is sampled together
+/// depends on how much there is to sample.
 #[test]
 fn a_part_is_that_of_the_whole() {
-    let scene = load_builtin("assignment").expect("a scene");
     let tile = whitted::film::Tile { x0: 13, y0: 30, x1: 41, y1: 72 };
-    for aa in ["none", "grid:2", "adaptive:4", "adaptive:0,20"] {
+    let modes = ["none", "grid:2", "adaptive:4", "adaptive:0,20"];
+    let scenes = [("assignment", None), ("spheres", Some(10_000))];
+    for ((name, objects), aa) in scenes.into_iter().flat_map(|scene| modes.map(|aa| (scene, aa))) {
+        let scene = load_builtin_of(name, objects).expect("a scene");
         let whole = rendered(&scene, mode(aa)).film;
         let options = RenderOptions {
             size: Some([SIDE; 2]),
@@ -150,7 +153,7 @@ fn a_part_is_that_of_the_whole() {
         let part = support::rendering(&scene, &options).film;
         assert_eq!((part.width(), part.height()), (28, 42));
         for (x, y) in (0..42).flat_map(|y| (0..28).map(move |x| (x, y))) {
-            assert_eq!(part.pixel(x, y), whole.pixel(x + 13, y + 30), "{aa}: {x}, {y}");
+            assert_eq!(part.pixel(x, y), whole.pixel(x + 13, y + 30), "{name} {aa}: {x}, {y}");
         }
     }
 }
