@@ -7,20 +7,21 @@ use std::time::Duration;
 
 use whitted::checkpoint::{CheckpointError, Job};
 use whitted::render::{Effort, Goal, RenderOptions, Rendering, blocks, part, render_blocks};
-use whitted::scene::{Scene, load_builtin};
+use whitted::scene::{Scene, load_builtin, load_builtin_of};
 
 use super::damage::{label, quiet};
 use super::folder;
 
-/// The goal, and a part of the picture that holds some of everything.
-fn options() -> RenderOptions {
+/// A picture of everything towards a small error; of spheres so many that hits wait for each other a larger one does.
+fn options(scene: &Scene) -> RenderOptions {
     let aa = "adaptive:0,1024".parse().expect("a mode");
-    let goal = Goal::Error(0.3);
+    let goal = Goal::Error(if scene.name() == "assignment" { 0.3 } else { 9.0 });
     RenderOptions { size: Some([200, 150]), aa, goal, ..RenderOptions::default() }
 }
 
 fn job<'a>(scene: &Scene, path: &Path, stop: &'a AtomicBool) -> Job<'a> {
-    let places = blocks(&part(scene, &options()).expect("whole"), options().aa, options().goal);
+    let options = options(scene);
+    let places = blocks(&part(scene, &options).expect("whole"), options.aa, options.goal);
     let label = label(scene, "max-error=0.3");
     Job::new(label, places, Some(path.to_owned()), stop, &quiet)
 }
@@ -41,7 +42,7 @@ fn render(scene: &Scene, job: &Job, stop: &AtomicBool, time: Option<Duration>) -
                 }
             }
         });
-        let effort = render_blocks(scene, &options(), job).expect("rendered");
+        let effort = render_blocks(scene, &options(scene), job).expect("rendered");
         has_ended.store(true, Ordering::Relaxed);
         effort
     })
@@ -50,7 +51,7 @@ fn render(scene: &Scene, job: &Job, stop: &AtomicBool, time: Option<Duration>) -
 fn uninterrupted(scene: &Scene, path: &Path) -> Rendering {
     let never = AtomicBool::new(false);
     let whole = job(scene, path, &never);
-    let effort = render_blocks(scene, &options(), &whole).expect("rendered");
+    let effort = render_blocks(scene, &options(scene), &whole).expect("rendered");
     whole.into_rendering(&effort)
 }
 
@@ -65,15 +66,21 @@ fn assert_same(a: &Rendering, b: &Rendering) {
 /// Oracle: the uninterrupted render.
 #[test]
 fn a_picture_towards_an_error_goes_on_from_wherever_it_was_left() {
+    for (name, objects) in [("assignment", None), ("spheres", Some(10_000))] {
+        let scene = load_builtin_of(name, objects).expect("built in");
+        goes_on_from_wherever_it_was_left(&scene);
+    }
+}
+
+fn goes_on_from_wherever_it_was_left(scene: &Scene) {
     let folder = folder();
     let path = folder.path().join("a.checkpoint");
-    let scene = load_builtin("assignment").expect("built in");
-    let whole = uninterrupted(&scene, &path);
+    let whole = uninterrupted(scene, &path);
     assert!(!path.exists() && whole.outcome.per_ray.is_some() && !whole.outcome.is_stopped);
     let (mut stops, mut kept, mut last) = (0, 0, f64::INFINITY);
     let again = loop {
         let stop = AtomicBool::new(false);
-        let part = job(&scene, &path, &stop);
+        let part = job(scene, &path, &stop);
         if path.exists() {
             part.resume().expect("of the same picture");
             assert!(part.has_checkpoint());
@@ -82,7 +89,7 @@ fn a_picture_towards_an_error_goes_on_from_wherever_it_was_left() {
             (kept, last) = (kept + usize::from(error.is_finite()), error);
         }
         // Longer and longer, so that it ends on any machine.
-        let effort = render(&scene, &part, &stop, Some(Duration::from_millis(4 + 6 * stops)));
+        let effort = render(scene, &part, &stop, Some(Duration::from_millis(4 + 6 * stops)));
         if part.is_complete() {
             part.remove_checkpoint().expect("deleted");
             break part.into_rendering(&effort);
