@@ -43,7 +43,7 @@ pub(super) struct Lit {
     /// The lanes in use.
     lanes: u64,
     pub(super) surfaces: SurfaceLanes,
-    pub(super) path: [u32; LANES],
+    path: [u32; LANES],
     /// The light that the texture scatters, and the highlights, channel by channel.
     diffuse: [Singles; 3],
     specular: [Singles; 3],
@@ -173,13 +173,8 @@ impl Lit {
             self.add_highlight(k, light.intensity);
         }
         for k in lanes(seen & self.passed.lanes()) {
-            let (transmittance, passed) = self.passed.through(scene, k);
-            if transmittance == Rgb::ZERO {
-                continue;
-            }
-            let word = signature::light_word(light, passed);
+            let Some((arriving, word)) = self.passed.arriving(scene, light, k) else { continue };
             self.path[k] = Path::of(self.path[k]).light(word).signature();
-            let arriving = light.intensity * transmittance;
             let scattered = self.scatter[k] * self.cosine[k] as f32;
             for (channel, arriving) in self.diffuse.iter_mut().zip(arriving.to_array()) {
                 channel[k] += arriving * scattered;

@@ -4,10 +4,11 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 
-use super::signature::hash;
+use super::signature::{hash, light_word};
 use crate::{
     color::Rgb,
     geometry::{Crossing, lanes::RayLanes},
+    light::Light,
     scene::Scene,
 };
 
@@ -26,15 +27,19 @@ impl Passed {
         self.lanes
     }
 
-    /// The part of each channel that arrives in a lane, the product of the transmissions of all surfaces crossed,
-    /// without refraction; and a hash of these.
-    pub(super) fn through(&self, scene: &Scene, lane: usize) -> (Rgb, u32) {
+    /// What arrives of a light in a lane: its intensity times the transmissions of all surfaces crossed, without
+    /// refraction; and what stands for it in signatures. `None` if nothing does.
+    #[inline(always)]
+    pub(super) fn arriving(&self, scene: &Scene, light: &Light, lane: usize) -> Option<(Rgb, u32)> {
         let first = self.crossings.partition_point(|crossing| crossing.0 < lane);
         let own = self.crossings[first..].iter().take_while(|crossing| crossing.0 == lane);
-        own.fold((Rgb::ONE, 0_u32), |(transmittance, passed), (_, _, primitive)| {
-            let transmission = scene.material(*primitive).transmission;
-            (transmittance * transmission, passed.wrapping_add(hash(primitive + 1)))
-        })
+        let (transmittance, passed) =
+            own.fold((Rgb::ONE, 0_u32), |(transmittance, passed), (_, _, primitive)| {
+                let transmission = scene.material(*primitive).transmission;
+                (transmittance * transmission, passed.wrapping_add(hash(primitive + 1)))
+            });
+        let arrives = transmittance != Rgb::ZERO;
+        arrives.then(|| (light.intensity * transmittance, light_word(light, passed)))
     }
 }
 

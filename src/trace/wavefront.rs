@@ -16,7 +16,7 @@ use super::{
     Gathered, Task,
     lit::{Lit, Wish, shown},
     shadow::{self, Passed},
-    signature::{Path, light_word},
+    signature::Path,
 };
 use crate::{
     color::Rgb,
@@ -130,7 +130,7 @@ impl Wavefront {
             inside: surfaces.is_inside(k),
             start: surfaces.start.get(k),
             local: surfaces.local.get(k),
-            path: lit.path[k],
+            path: lit.signature(k),
             diffuse,
             specular,
             pigment: lit.pigment(k, material),
@@ -190,16 +190,8 @@ impl Wavefront {
         for k in lanes(seen) {
             let Ask { hit, wish, .. } = &asks[order[k] as u32 as usize];
             let hit = &mut self.hits[*hit as usize];
-            let (mut arriving, mut passed) = (light.intensity, 0);
-            if self.passed.lanes() >> k & 1 != 0 {
-                let transmittance;
-                (transmittance, passed) = self.passed.through(scene, k);
-                if transmittance == Rgb::ZERO {
-                    continue;
-                }
-                arriving *= transmittance;
-            }
-            let mut path = Path::of(hit.path).light(light_word(light, passed));
+            let Some((arriving, word)) = self.passed.arriving(scene, light, k) else { continue };
+            let mut path = Path::of(hit.path).light(word);
             if wish.is_inner {
                 path = path.highlight();
             }
