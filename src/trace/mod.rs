@@ -228,19 +228,14 @@ impl<'a> Tracer<'a> {
     /// Traces the batch that was taken, and lights its hits now or later.
     fn run(&mut self) {
         let accel = self.scene.accel();
-        let mut lighting = Lighting::Done;
-        accel.run(Run(self, &mut lighting));
-        // By itself, since what tracing a batch has in registers is not to make room for it.
-        if lighting == Lighting::Later {
-            accel.run(Wait(self));
-        }
+        accel.run(Run(self));
         if self.waiting.is_full() {
             accel.run(Finish(self));
         }
     }
 
     #[inline(always)]
-    fn trace_batch(&mut self) -> Lighting {
+    fn trace_batch(&mut self) {
         let (scene, batch) = (self.scene, &mut *self.batch);
         let is_camera = batch.tasks[0].level == 1;
         let used = u64::MAX >> (LANES - batch.tasks.len());
@@ -276,11 +271,11 @@ impl<'a> Tracer<'a> {
             self.meet(primitive, same, is_camera);
         }
         if self.waits && primitives > FEW && self.is_scattered() {
-            return Lighting::Later;
+            self.wait();
+            return;
         }
         self.light();
         self.show();
-        Lighting::Done
     }
 
     /// Whether the hits to be lit are so far from each other that some light sees more primitives between them than one
@@ -344,13 +339,13 @@ impl<'a> Tracer<'a> {
     }
 }
 
-/// The lit hits of a batch, to be kept.
-struct Wait<'t, 'a>(&'t mut Tracer<'a>);
+/// The batch that a tracer has taken, to be traced.
+struct Run<'t, 'a>(&'t mut Tracer<'a>);
 
-impl Work for Wait<'_, '_> {
+impl Work for Run<'_, '_> {
     #[inline(always)]
     fn run(self) {
-        self.0.wait();
+        self.0.trace_batch();
     }
 }
 
@@ -362,22 +357,5 @@ impl Work for Finish<'_, '_> {
     fn run(self) {
         let Tracer { scene, waiting, gathered, .. } = self.0;
         waiting.finish(scene, gathered);
-    }
-}
-
-/// When the hits of a batch are lit.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Lighting {
-    Done,
-    Later,
-}
-
-/// The batch that a tracer has taken, to be traced.
-struct Run<'t, 'a>(&'t mut Tracer<'a>, &'t mut Lighting);
-
-impl Work for Run<'_, '_> {
-    #[inline(always)]
-    fn run(self) {
-        *self.1 = self.0.trace_batch();
     }
 }
