@@ -186,7 +186,7 @@ impl Spread {
 }
 
 /// `y` at `x` by straight lines between the points of `table` in logarithms of both; straight on beyond its ends.
-fn by_logarithms(table: &[(f32, f32)], x: f32) -> f32 {
+pub(super) fn by_logarithms(table: &[(f32, f32)], x: f32) -> f32 {
     let last = table.len() - 1;
     let place = table.iter().skip(1).take(last - 1).take_while(|(from, _)| *from < x).count();
     let ((x0, y0), (x1, y1)) = (table[place], table[place + 1]);
@@ -224,62 +224,6 @@ pub fn all_alike(count: u32) -> f32 {
     2.0 / ((n + 2.0) * (n + 3.0))
 }
 
-/// The share of the variance that `points` of the sequence leave by themselves.
-pub fn bare_sequence_share(points: u32) -> f32 {
-    const SHARES: [(f32, f32); 4] = [(1.0, 1.0), (4.0, 0.036), (16.0, 0.0070), (64.0, 0.0011)];
-    by_logarithms(&SHARES, points.max(1) as f32)
-}
-
-/// The share of the variance that a grid of 2 × 2 samples leaves.
-pub const GRID_OF_FOUR: f32 = 0.068;
-
-/// Parts of a pixel's samples that are even patterns as well, whatever they show.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Parts {
-    /// Of a grid with so many samples in a row: four grids, or three diagonals of 3 × 3 samples.
-    OfGrid(usize),
-    /// Of so many samples of a sequence: its quarters.
-    OfSequence(usize),
-}
-
-impl Parts {
-    /// How many parts there are, and which of them a sample is in.
-    fn part_of(self, sample: usize) -> (usize, usize) {
-        match self {
-            Self::OfGrid(3) => (3, (sample / 3 + sample % 3) % 3),
-            Self::OfGrid(side) => (4, sample / side % 2 * 2 + sample % side % 2),
-            Self::OfSequence(count) => (count.min(4), sample * count.min(4) / count),
-        }
-    }
-
-    /// What the parts differ by, their samples being given in order: for each channel the squared error that their mean
-    /// would have if they were independent, as those of random samples are. At a single edge the mean of a grid has a
-    /// third of that.
-    pub fn variance(self, samples: impl Iterator<Item = Vec3>) -> Vec3 {
-        let (mut sums, mut counts, mut parts) = ([Vec3::ZERO; 4], [0_u32; 4], 1);
-        for (k, sample) in samples.enumerate() {
-            let (of, part) = self.part_of(k);
-            parts = of;
-            sums[part] += sample;
-            counts[part] += 1;
-        }
-        let means = || (0..parts).map(|k| sums[k] / counts[k].max(1) as f32);
-        let mean = means().sum::<Vec3>() / parts as f32;
-        let squares: Vec3 = means().map(|m| (m - mean) * (m - mean)).sum();
-        squares / (parts * (parts - 1)).max(1) as f32
-    }
-}
-
-/// The part of what [`Parts`] of a grid of `side` × `side` samples differ by that the whole leaves at an edge.
-pub fn interleaved_share(side: u32) -> f32 {
-    by_logarithms(&[(3.0, 0.62), (4.0, 0.33), (6.0, 0.25)], side as f32)
-}
-
-/// The share of the neighbours' contrast that may hide between the equal samples of such a grid.
-pub fn grid_unseen(side: u32) -> f32 {
-    by_logarithms(&[(2.0, 2.9e-3), (3.0, 4.0e-4), (4.0, 1.5e-4), (6.0, 4e-5)], side as f32)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -302,28 +246,6 @@ mod tests {
         assert!(
             pixel([1, 2, 1, 2, 2, 2, 1, 2, 1]).inner && !pixel([1, 1, 1, 2, 2, 2, 1, 2, 1]).inner
         );
-    }
-
-    /// Oracle: by hand. The four interleaved grids of one of 4 × 4 samples are grey 0, 0, 0 and 1: levels 0, 0, 0 and
-    /// 255, whose mean squared deviation from 63.75 is 3/16 of 255²; their mean has a third of that.
-    #[test]
-    fn parts_are_compared() {
-        let level = |k: usize| Vec3::splat(if k / 4 % 2 == 1 && k % 2 == 1 { 255.0 } else { 0.0 });
-        let levels: Vec<Vec3> = (0..16).map(level).collect();
-        let expected = 255.0_f32.powi(2) * 3.0 / 16.0 / 3.0;
-        let variance = |side, levels: &[Vec3]| Parts::OfGrid(side).variance(levels.iter().copied());
-        assert!((variance(4, &levels) / expected - 1.0).abs().max_element() < 1e-4);
-        assert_eq!(variance(6, &[levels[5]; 36]), Vec3::ZERO);
-        // One diagonal of three is white: levels 255, 0 and 0, by 85 twice and 170 from their mean.
-        let levels: Vec<Vec3> =
-            (0..9_usize).map(|k| levels[if (k / 3 + k % 3) % 3 == 0 { 5 } else { 0 }]).collect();
-        let expected = 85.0_f32.powi(2) * 6.0 / 6.0;
-        assert!((variance(3, &levels) / expected - 1.0).abs().max_element() < 1e-4);
-        // The last quarter of a sequence is white: 3/16 of 255² again, and a third of that.
-        let last = (0..8).map(|k| Vec3::splat(if k > 5 { 255.0 } else { 0.0 }));
-        let expected = 255.0_f32.powi(2) * 3.0 / 16.0 / 3.0;
-        let variance = Parts::OfSequence(8).variance(last);
-        assert!((variance / expected - 1.0).abs().max_element() < 1e-4);
     }
 
     /// Oracle: the variance of a handful of numbers, worked by hand; grey 0 is level 0, grey 1 is level 255.

@@ -3,6 +3,8 @@
 pub mod estimate;
 pub mod kinds;
 pub mod levels;
+pub mod lines;
+pub mod pattern;
 pub mod refined;
 pub mod sobol;
 

@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod blocks;
+mod cell;
 mod crew;
 mod demand;
 mod goal;

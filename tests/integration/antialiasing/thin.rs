@@ -192,23 +192,66 @@ fn a_wire_that_runs_past_the_eye_is_found() {
     assert_honest("adaptive", &refined, &truth);
 }
 
-/// A fence of wires a tenth of a pixel wide, each of whose pixels is met by one sample of four or two of sixteen: by
-/// chance, which even samples know of. Oracle: 1024 samples in every pixel.
-///
-/// They lean: a wire that is nearly upright passes by whole columns of samples.
-#[test]
-fn even_samples_know_that_they_meet_wires_by_chance() {
+/// Thirty wires `width` pixels wide, each leaning a little more than the one before.
+fn fence(width: f64, least_lean: f64) -> Scene {
+    let pixel = 20.0 / f64::from(SIDE);
     let wire = |k: u32| {
-        let (x, lean) = (0.4 * f64::from(k) - 8.0, 4.0 + 0.07 * f64::from(k));
+        let (x, lean) = (0.4 * f64::from(k) - 8.0, least_lean + 0.07 * f64::from(k));
         format!(
-            "cylinder = {{ base = [{x}, -8, 0], top = [{}, 8, 0], radius = 0.0139, ends = \"open\" }}",
-            x + lean
+            "cylinder = {{ base = [{x}, -8, 0], top = [{}, 8, 0], radius = {}, ends = \"open\" }}",
+            x + lean,
+            width / 2.0 * pixel
         )
     };
-    let scene = white(&(0..30).map(wire).collect::<Vec<String>>());
+    white(&(0..30).map(wire).collect::<Vec<String>>())
+}
+
+/// Wires a tenth of a pixel wide, each of whose pixels is met by one sample of four or two of sixteen: by chance, which even
+/// samples know of. Oracle: 1024 samples in every pixel.
+#[test]
+fn even_samples_know_that_they_meet_wires_by_chance() {
+    let scene = fence(0.1, 4.0);
     let truth = rendered(&scene, mode("sobol:1024")).film;
     for aa in ["grid:2", "grid:3", "grid:4", "grid:8", "sobol:4", "sobol:16"] {
         assert_honest(aa, &rendered(&scene, mode(aa)), &truth);
+    }
+}
+
+/// The same for wires that are nearly upright, so that a whole column of samples meets one or none does.
+#[test]
+fn whole_columns_of_samples_know_that_they_meet_wires_by_chance() {
+    for width in [0.1, 0.3, 0.6] {
+        let scene = fence(width, -1.0);
+        let truth = rendered(&scene, mode("sobol:1024")).film;
+        for aa in ["grid:2", "grid:3", "grid:4", "grid:6"] {
+            assert_honest(&format!("{width} {aa}"), &rendered(&scene, mode(aa)), &truth);
+        }
+    }
+}
+
+/// Rectangles whose edges are upright and level, or nearly: all rows of a pixel's samples are off by as much. Oracle: 1024 samples
+/// in every pixel.
+#[test]
+fn edges_along_the_samples_are_known_to_be_off() {
+    for slope in [0.0, 0.01] {
+        let mut random = SplitMix64::new(4);
+        let mut number = |from: f64, to: f64| from + (to - from) * random.uniform();
+        let quads: Vec<String> = (0..12)
+            .map(|k| {
+                let (x, y, z) = (number(-9.0, 6.0), number(-9.0, 6.0), 0.01 * f64::from(k));
+                let (width, height) = (number(0.5, 3.0), number(0.5, 3.0));
+                let edges = [[width, width * slope], [-height * slope, height]];
+                let [[a, b], [c, d]] = edges;
+                format!(
+                    "quad = {{ corner = [{x}, {y}, {z}], edges = [[{a}, {b}, 0], [{c}, {d}, 0]] }}"
+                )
+            })
+            .collect();
+        let scene = white(&quads);
+        let truth = rendered(&scene, mode("sobol:1024")).film;
+        for aa in ["none", "grid:2", "grid:3", "grid:4", "grid:6", "grid:8", "sobol:16"] {
+            assert_honest(&format!("{slope} {aa}"), &rendered(&scene, mode(aa)), &truth);
+        }
     }
 }
 
