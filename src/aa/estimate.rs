@@ -124,6 +124,13 @@ impl Spread {
         Self { origin, ..Self::default() }
     }
 
+    /// The same again.
+    pub fn restart(&mut self, origin: Vec3) {
+        let mut signatures = std::mem::take(&mut self.signatures);
+        signatures.clear();
+        *self = Self { origin, signatures, ..Self::default() };
+    }
+
     /// Takes in a sample by its display levels.
     pub fn add(&mut self, levels: Vec3, signature: u32) {
         let deviation = levels - self.origin;

@@ -27,7 +27,7 @@ static TABLE: LazyLock<[(f32, f32); BUCKETS]> = LazyLock::new(|| {
 /// The sRGB encoding of a linear colour in levels of 255, not rounded; channels are clamped to `[0, 1]` first.
 ///
 /// A table with straight lines between its entries: off by at most 0.002 levels.
-#[inline]
+#[inline(always)]
 pub fn levels(color: Rgb) -> Vec3 {
     let table = &*TABLE;
     let channel = |value: f32| {

@@ -29,17 +29,26 @@ pub(super) struct Cell {
     by_chance: [f32; 2],
 }
 
-impl Cell {
-    /// What the `samples` of a pixel say, which has a number of its own. `seen` is room for their levels.
-    pub(super) fn of(
-        pattern: Pattern,
-        samples: &[Sample],
-        own_number: u32,
-        seen: &mut Vec<Vec3>,
-    ) -> Self {
+/// What makes cells of samples.
+pub(super) struct Judge {
+    pattern: Pattern,
+    // Of one pixel; kept for their memory.
+    levels: Vec<Vec3>,
+    spread: Spread,
+}
+
+impl Judge {
+    pub(super) fn of(pattern: Pattern) -> Self {
+        let levels = Vec::with_capacity(pattern.count());
+        Self { pattern, levels, spread: Spread::default() }
+    }
+
+    /// What the `samples` of a pixel say, which has a number of its own.
+    pub(super) fn cell(&mut self, samples: &[Sample], own_number: u32) -> Cell {
+        let Self { pattern, levels: seen, spread } = self;
         seen.clear();
         seen.extend(samples.iter().map(|sample| levels(sample.color)));
-        let mut spread = Spread::about(seen[0]);
+        spread.restart(seen[0]);
         let mut sum = Rgb::ZERO;
         for (sample, levels) in samples.iter().zip(&*seen) {
             sum += sample.color;
@@ -57,11 +66,11 @@ impl Cell {
         };
         let is_by_chance = kinds.has_few_others();
         let only = spread.only_signature();
-        Self {
+        Cell {
             color,
             signature: only.unwrap_or(own_number),
             alike: only.is_some(),
-            error: pattern.error(seen, &spread).max(along),
+            error: pattern.error(seen, spread).max(along),
             kinds,
             by_chance: if is_by_chance { lone.unwrap_or_else(scattered) } else { [0.0; 2] },
         }
@@ -98,12 +107,13 @@ impl Plane<Cell> {
         let is_as = |cell: &Cell, other: &Cell| other.alike && other.signature == cell.signature;
         let of_side = |(right, down): (i64, i64)| {
             let there = self.nearest(x + right, y + down);
-            let is_straight = [-1, 1].into_iter().all(|k| {
+            let goes_on = |k: i64| {
                 let (x, y) = (x + k * down, y + k * right);
                 is_as(here, self.nearest(x, y)) && is_as(there, self.nearest(x + right, y + down))
-            });
-            let is_edge = there.alike && there.signature != here.signature && is_straight;
-            if is_edge { border_error(here.color, there.color, side) } else { 0.0 }
+            };
+            let is_edge = there.alike && there.signature != here.signature;
+            let is_straight = is_edge && goes_on(-1) && goes_on(1);
+            if is_straight { border_error(here.color, there.color, side) } else { 0.0 }
         };
         [(1, 0), (-1, 0), (0, 1), (0, -1)].into_iter().map(of_side).sum()
     }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::{
     Outcome, Picture,
-    cell::Cell,
+    cell::{Cell, Judge},
     crew::{Crew, Sampler, in_turn, lock, sum_of_tiles, trace_centers},
     look::Window,
     plane::{Area, Plane},
@@ -80,7 +80,7 @@ fn even<S: Sampler + Send>(
             let of_tile = |(k, tile)| in_turn(tile).map(move |(x, y)| (k, x, y));
             let pixels: Vec<(usize, i64, i64)> =
                 tiles.iter().enumerate().flat_map(of_tile).collect();
-            let mut seen = Vec::with_capacity(count);
+            let mut judge = Judge::of(pattern);
             for some in pixels.chunks(pixels_at_once) {
                 scratch.places.clear();
                 scratch.samples.clear();
@@ -90,7 +90,7 @@ fn even<S: Sampler + Send>(
                 sampler.sample(&scratch.places, &mut scratch.samples);
                 for ((k, x, y), samples) in some.iter().zip(scratch.samples.chunks(count)) {
                     let own_number = (x * 31 + y * 17) as u32;
-                    let cell = Cell::of(pattern, samples, own_number, &mut seen);
+                    let cell = judge.cell(samples, own_number);
                     own[*k][tiles[*k].place_of(*x, *y)] = cell;
                 }
             }
