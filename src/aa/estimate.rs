@@ -35,9 +35,26 @@ const BETWEEN: f32 = 0.75;
 #[inline(always)]
 pub fn smooth_error(curve: f32, slope: f32, corrected: bool) -> f32 {
     let share = if corrected { CORRECTED_CURVE } else { CENTER_CURVE };
+    curve * share + noise_error(curve, slope)
+}
+
+/// The part of it that is noise's.
+#[inline(always)]
+pub fn noise_error(curve: f32, slope: f32) -> f32 {
     // 3 for noise. A slope of zero gives 1, also without a curve.
     let noise = (curve / (3.0 * slope)).min(1.0);
-    curve * (share + CENTER_CURVE * NOISE * noise * noise)
+    most_noise_error(curve) * noise * noise
+}
+
+/// The most that it can be.
+#[inline(always)]
+pub fn most_noise_error(curve: f32) -> f32 {
+    curve * (CENTER_CURVE * NOISE)
+}
+
+/// How busy it is, from 0 to 1, where noise makes up `part` of the most that it could be: more than at edges and in what is smooth.
+pub fn busy_of_noise(part: f32) -> f32 {
+    ((part - 0.3) / 0.4).clamp(0.0, 1.0)
 }
 
 /// The error of a centre's colour where an edge passes by, from the [squared differences](Look::edge) across it.

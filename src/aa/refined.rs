@@ -173,12 +173,16 @@ impl Refined {
     /// From 8 samples on the second comes from what the quarters of the samples differ by, which knows nothing of what
     /// they met.
     pub fn errors(&self, contrast: f32, busy: f32) -> (f32, f32) {
-        let seen = self.spread.error(self.stage.share, BUSY * busy);
+        // What differs although all met the same is noise, all of it where it is busy.
+        let noise = if self.is_alike() { busy } else { 0.0 };
+        let seen = self.spread.error(self.stage.share, noise.max(BUSY * busy));
         if self.points < 8 {
             let error = self.with_unseen(seen, contrast, busy);
             return (error, error);
         }
-        let quartered = self.stage.quarters * self.quarters.variance();
+        let share =
+            if noise > 0.0 { self.stage.quarters.powf(1.0 - noise) } else { self.stage.quarters };
+        let quartered = share * self.quarters.variance();
         let error = |seen: f32| self.with_unseen(seen, contrast, busy);
         (error(seen.max(quartered)), error(quartered))
     }

@@ -14,7 +14,7 @@ pub(super) const LAST_STEP: u32 = 80;
 const ERROR_POWER: f64 = 1.6 / 2.6;
 /// The part of that which is left on average, because pixels go on by whole stages; rather too small, so as not to
 /// overshoot.
-const LEFT: f64 = 0.5;
+const LEFT: f64 = 0.4;
 /// The most levels of the ladder that are taken at once towards an error.
 const LONGEST_STEP: usize = 12;
 /// The levels of the ladder that a step takes at most: what is worth an eighth of the most can wait.

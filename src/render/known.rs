@@ -10,7 +10,7 @@ use super::{
     demand::Demand,
     hidden::hidden_error,
     hints::{Hint, Least},
-    look::{ONE_COLOR, Window, corrected, skips_cells},
+    look::{Noise, ONE_COLOR, Window, corrected, skips_cells},
     outlook::{Outlook, Worth},
     plane::{Area, Plane, Tiled},
     round::{Chosen, Pixel, Threshold, Unseen, is_disputed, is_picked},
@@ -23,6 +23,12 @@ use crate::{
 /// The samples that a pixel gets at least where a pattern's cells are no wider than it: its centre and corners, and
 /// those of its neighbours, may all have met the same colour.
 const LEAST_IN_CELLS: Least = Least { samples: 8, if_alike: 8, part: 0.5 };
+
+/// The pixels around a tile or a picture whose centres say something of those in it: the neighbours of each, and theirs.
+pub(super) const APRON: usize = 2;
+
+/// The squared differences between a pixel of noise and its eight neighbours, as a multiple of the noise's variance.
+const CONTRAST_OF_NOISE: f32 = 16.0;
 
 /// Tiles that a thread takes at least, where all are gone through.
 const TILES_AT_ONCE: usize = 64;
@@ -64,7 +70,7 @@ impl Known {
         let known = Mutex::new(&mut *self);
         let never = || false;
         crew.run(&area, false, never, |sampler, _, tile| {
-            let window = Window::of_centers(tile, centers);
+            let window = Window::of_centers(tile, APRON, centers);
             let suspects = window.suspects();
             let mut pixels = pixels_of(tile, &window, &suspects, centers);
             for (pixel, (x, y)) in pixels.iter_mut().zip(tile.pixels()) {
@@ -196,8 +202,14 @@ fn pixels_of(
     suspects: &[(usize, Look)],
     centers: &Plane<Sample>,
 ) -> Vec<Pixel> {
-    let smooth = |error| Pixel { error, ..Pixel::default() };
-    let mut pixels: Vec<Pixel> = window.smooth_errors(true).into_iter().map(smooth).collect();
+    let smooth = |(own, noise): (f32, Noise)| Pixel {
+        error: own.max(noise.error()),
+        contrast: CONTRAST_OF_NOISE * noise.error(),
+        busy: noise.busy(),
+        ..Pixel::default()
+    };
+    let errors = window.smooth_errors(true).into_iter().zip(window.noise_around());
+    let mut pixels: Vec<Pixel> = errors.map(smooth).collect();
     for (place, look) in suspects {
         let (x, y) = tile.pixel_at(*place);
         let skips = skips_cells(centers, x, y, look.contrast);

@@ -6,14 +6,17 @@ use super::plane::{Area, Plane, TILE_SIDE};
 use crate::{
     aa::{
         Sample,
-        estimate::{Look, NEIGHBOURS, edge_error, smooth_error},
+        estimate::{
+            Look, NEIGHBOURS, busy_of_noise, edge_error, most_noise_error, noise_error,
+            smooth_error,
+        },
         levels::levels,
     },
     color::Rgb,
 };
 
-/// The widest tile.
-const SIDE: usize = TILE_SIDE as usize;
+/// The most pixels in a row of a window that are judged: the widest tile and one to either side.
+const SIDE: usize = TILE_SIDE as usize + 2;
 
 /// The least contrast, in squared levels, of a pixel whose eight neighbours are not all of its own colour to the eye:
 /// two levels off on average.
@@ -26,16 +29,64 @@ pub(super) struct Window {
     levels: [Vec<f32>; 3],
     signatures: Vec<u32>,
     around: Area,
+    /// The pixels between the edges of the tile and of the window.
+    margin: usize,
+}
+
+/// The noise of 3 × 3 pixels: where a pixel is amid noise it is off by as much as those around, also if its own neighbours are like
+/// it by chance. Those do not count whose neighbours met anything else.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Noise {
+    /// The sum of the pixels' errors by noise, and the most that it could be.
+    error: f32,
+    most: f32,
+}
+
+impl Noise {
+    fn and(self, other: Self) -> Self {
+        Self { error: self.error + other.error, most: self.most + other.most }
+    }
+
+    /// The squared error of the pixel in the middle, none where it is not busy.
+    pub(super) fn error(self) -> f32 {
+        self.busy() * self.error / 9.0
+    }
+
+    /// How busy it is there.
+    pub(super) fn busy(self) -> f32 {
+        busy_of_noise(self.error / self.most.max(f32::MIN_POSITIVE))
+    }
+}
+
+/// A row of pixels of a window.
+struct Row {
+    /// Where in the window it begins, one pixel before its first, with the rows above and below.
+    starts: [usize; 3],
+    /// Its pixels.
+    count: usize,
+}
+
+impl Row {
+    /// Its pixels, which are known not to be more than these.
+    #[inline(always)]
+    fn count(&self) -> usize {
+        self.count.min(SIDE)
+    }
 }
 
 impl Window {
-    /// The window about `tile` of a plane, from whose entries `see` makes colours and signatures.
-    pub(super) fn new<T>(tile: &Area, plane: &Plane<T>, see: impl Fn(&T) -> (Rgb, u32)) -> Self {
-        let around = tile.grown(1);
+    /// The window `margin` pixels about `tile` of a plane, from whose entries `see` makes colours and signatures.
+    pub(super) fn new<T>(
+        (tile, margin): (&Area, usize),
+        plane: &Plane<T>,
+        see: impl Fn(&T) -> (Rgb, u32),
+    ) -> Self {
+        let around = tile.grown(margin as i64);
         let mut window = Self {
             levels: std::array::from_fn(|_| vec![0.0; around.len()]),
             signatures: vec![0; around.len()],
             around,
+            margin,
         };
         let mut place = 0;
         for y in around.y0..around.y1 {
@@ -53,44 +104,81 @@ impl Window {
         window
     }
 
-    /// The window about `tile` of traced centres.
-    pub(super) fn of_centers(tile: &Area, centers: &Plane<Sample>) -> Self {
-        Self::new(tile, centers, |sample| (sample.color, sample.signature))
+    /// The window `margin` pixels about `tile` of traced centres.
+    pub(super) fn of_centers(tile: &Area, margin: usize, centers: &Plane<Sample>) -> Self {
+        Self::new((tile, margin), centers, |sample| (sample.color, sample.signature))
     }
 
     /// The estimated squared error of each of the tile's centres, row by row, as if their neighbours had met the same;
     /// `corrected` is whether the second-order term of the box integral is added to its colour.
     pub(super) fn smooth_errors(&self, corrected: bool) -> Vec<f32> {
-        let count = self.pixels();
         let mut errors = Vec::with_capacity(self.around.len());
-        for [above, at, below] in self.rows() {
-            let (mut curve, mut slope) = ([0.0; SIDE], [0.0; SIDE]);
-            for channel in &self.levels {
-                let row = |start: usize| &channel[start..start + count];
-                let (west, here, east) = (row(at), row(at + 1), row(at + 2));
-                let (north, south) = (row(above + 1), row(below + 1));
-                for k in 0..count {
-                    let across = west[k] + east[k] - 2.0 * here[k];
-                    let down = north[k] + south[k] - 2.0 * here[k];
-                    let (level, upright) = (west[k] - east[k], north[k] - south[k]);
-                    curve[k] += across * across + down * down;
-                    slope[k] += level * level + upright * upright;
-                }
-            }
-            let each = curve[..count].iter().zip(&slope);
-            errors.extend(each.map(|(c, s)| smooth_error(c / 3.0, s / 3.0, corrected)));
+        for row in self.rows(0) {
+            let (curve, slope) = self.bends(&row);
+            let each = curve[..row.count()].iter().zip(&slope);
+            errors.extend(each.map(|(c, s)| smooth_error(*c, *s, corrected)));
         }
         errors
+    }
+
+    /// The noise about each pixel of the tile, row by row. Takes a margin of two pixels.
+    pub(super) fn noise_around(&self) -> Vec<Noise> {
+        let noise_of = |row: Row| {
+            let (curve, slope) = self.bends(&row);
+            let differing = self.differing(&row);
+            let each: [Noise; SIDE] = std::array::from_fn(|k| match differing[k] {
+                0 => Noise {
+                    error: noise_error(curve[k], slope[k]),
+                    most: most_noise_error(curve[k]),
+                },
+                _ => Noise::default(),
+            });
+            each
+        };
+        let rows: Vec<[Noise; SIDE]> = self.rows(1).map(noise_of).collect();
+        let count = self.around.width() - 2 * self.margin;
+        let mut around = Vec::with_capacity(self.around.len());
+        for three in rows.windows(3) {
+            let sum: [Noise; SIDE] =
+                std::array::from_fn(|k| three[0][k].and(three[1][k]).and(three[2][k]));
+            around.extend((0..count).map(|k| sum[k].and(sum[k + 1]).and(sum[k + 2])));
+        }
+        around
+    }
+
+    /// The squared second differences of the pixels of a row, and the squared differences of their opposite neighbours, each the
+    /// mean of the channels, horizontal and vertical.
+    #[inline(always)]
+    fn bends(&self, row: &Row) -> ([f32; SIDE], [f32; SIDE]) {
+        let (count, [above, at, below]) = (row.count(), row.starts);
+        let (mut curve, mut slope) = ([0.0; SIDE], [0.0; SIDE]);
+        for channel in &self.levels {
+            let row = |start: usize| &channel[start..start + count];
+            let (west, here, east) = (row(at), row(at + 1), row(at + 2));
+            let (north, south) = (row(above + 1), row(below + 1));
+            for k in 0..count {
+                let across = west[k] + east[k] - 2.0 * here[k];
+                let down = north[k] + south[k] - 2.0 * here[k];
+                let (level, upright) = (west[k] - east[k], north[k] - south[k]);
+                curve[k] += across * across + down * down;
+                slope[k] += level * level + upright * upright;
+            }
+        }
+        for k in 0..count {
+            (curve[k], slope[k]) = (curve[k] / 3.0, slope[k] / 3.0);
+        }
+        (curve, slope)
     }
 
     /// The estimated squared error of each of the tile's centres, row by row, as [`Look::center_error`] has it.
     pub(super) fn center_errors(&self) -> Vec<f32> {
         let mut errors = self.smooth_errors(false);
-        for (starts, errors) in self.rows().zip(errors.chunks_mut(self.pixels())) {
-            if self.differing(starts).iter().all(|differs| *differs == 0) {
+        let width = self.around.width() - 2 * self.margin;
+        for (row, errors) in self.rows(0).zip(errors.chunks_mut(width)) {
+            if self.differing(&row).iter().all(|differs| *differs == 0) {
                 continue;
             }
-            for (error, edge) in errors.iter_mut().zip(self.edges(starts)) {
+            for (error, edge) in errors.iter_mut().zip(self.edges(&row)) {
                 *error = error.max(edge_error(edge));
             }
         }
@@ -101,19 +189,19 @@ impl Window {
     /// their looks.
     pub(super) fn suspects(&self) -> Vec<(usize, Look)> {
         let mut suspects = Vec::new();
-        let count = self.pixels();
-        for (row, starts) in self.rows().enumerate() {
-            let differing = self.differing(starts);
-            let others = (0..count).filter(|&k| differing[k] != 0);
-            suspects.extend(others.map(|k| (row * count + k, self.look(starts[1] + 1 + k))));
+        for (y, row) in self.rows(0).enumerate() {
+            let differing = self.differing(&row);
+            let others = (0..row.count()).filter(|&k| differing[k] != 0);
+            let first = row.starts[1] + 1;
+            suspects.extend(others.map(|k| (y * row.count() + k, self.look(first + k))));
         }
         suspects
     }
 
     /// Zero for those pixels of a row whose neighbours' rays all met the same.
-    fn differing(&self, starts: [usize; 3]) -> [u32; SIDE] {
+    fn differing(&self, row: &Row) -> [u32; SIDE] {
         let mut differing = [0; SIDE];
-        let count = self.pixels();
+        let (count, starts) = (row.count(), row.starts);
         let row = |start: usize| &self.signatures[start..start + count];
         let centers = row(starts[1] + 1);
         for start in starts.into_iter().flat_map(|start| start..start + 3) {
@@ -126,9 +214,9 @@ impl Window {
     }
 
     /// [`Look::edge`] of the pixels of a row.
-    fn edges(&self, starts: [usize; 3]) -> [f32; SIDE] {
+    fn edges(&self, row: &Row) -> [f32; SIDE] {
         let mut edges = [0.0; SIDE];
-        let count = self.pixels();
+        let (count, starts) = (row.count(), row.starts);
         let middle = starts[1] + 1;
         for (place, weight) in NEIGHBOURS {
             let other = starts[place / 3] + place % 3;
@@ -148,15 +236,14 @@ impl Window {
         edges
     }
 
-    /// Pixels in a row of the tile.
-    fn pixels(&self) -> usize {
-        (self.around.width() - 2).min(SIDE)
-    }
-
-    /// Where in the window each row of the tile begins, one pixel before its first, with the row above and below.
-    fn rows(&self) -> impl Iterator<Item = [usize; 3]> + use<> {
-        let width = self.around.width();
-        (1..self.around.height() - 1).map(move |row| [row - 1, row, row + 1].map(|row| row * width))
+    /// The rows of the tile, and of `ring` pixels about it, fewer than the margin.
+    fn rows(&self, ring: usize) -> impl Iterator<Item = Row> + use<> {
+        let (width, outside) = (self.around.width(), self.margin - ring);
+        let count = width - 2 * outside;
+        (outside..self.around.height() - outside).map(move |row| {
+            let starts = [row - 1, row, row + 1].map(|row| row * width + outside - 1);
+            Row { starts, count }
+        })
     }
 
     /// The look of the pixel at a place of the window.
@@ -234,7 +321,7 @@ mod tests {
             Area { x0: 47, y0: 33, x1: 50, y1: 40 },
             Area { x0: 16, y0: 16, x1: 17, y1: 18 },
         ] {
-            let window = Window::of_centers(&tile, &centers);
+            let window = Window::of_centers(&tile, 1, &centers);
             let mut expected = window.smooth_errors(false);
             for (place, look) in window.suspects() {
                 expected[place] = look.center_error();

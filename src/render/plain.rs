@@ -19,7 +19,7 @@ pub(super) fn centers<S: Sampler + Send>(crew: &Crew<S>, area: &Area) -> Picture
     let mut centers = Plane::new(*area, Sample::default());
     trace_centers(crew, &mut centers, || false);
     let squared_error = sum_of_tiles(area, |tile| {
-        let errors = Window::of_centers(tile, &centers).center_errors();
+        let errors = Window::of_centers(tile, 1, &centers).center_errors();
         errors.into_iter().map(f64::from).sum()
     });
     Picture {
@@ -102,7 +102,7 @@ fn even<S: Sampler + Send>(
     );
     let cells = cells.into_inner().unwrap_or_else(PoisonError::into_inner);
     let squared_error = sum_of_tiles(area, |tile| {
-        let window = Window::new(tile, &cells, |cell| (cell.color, cell.signature));
+        let window = Window::new((tile, 1), &cells, |cell| (cell.color, cell.signature));
         if count == 1 {
             let errors = window.center_errors();
             return ANY_PLACE * errors.into_iter().map(f64::from).sum::<f64>();

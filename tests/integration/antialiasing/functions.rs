@@ -1,7 +1,7 @@
 //! Closed forms.
 
 use glam::{DVec2, Vec2Swizzles};
-use whitted::render::Goal;
+use whitted::{math::random::SplitMix64, render::Goal};
 
 use super::{Found, Seen, found, picture_of};
 
@@ -141,6 +141,33 @@ fn a_chirp_is_told_from_its_colours_alone() {
         let found = measure(&chirp, &truth, aa);
         assert!(found.rmse < most, "{aa}: {found:?}");
         assert!(found.ratio > 0.5 && found.ratio < 8.0, "{aa}: {found:?}");
+    }
+}
+
+/// Cells of random greys, or of black and white, without any signature, as a picture that is seen very small: neighbours are alike by
+/// chance. The average of a pixel is that of the whole cells in it.
+#[test]
+fn noise_is_told_from_smooth_colours() {
+    for (per_pixel, is_grey, most) in [(7, true, [8.0, 6.0]), (2, false, [12.0, 10.0])] {
+        let grey = move |x: i64, y: i64| {
+            let mut random = SplitMix64::new((x as u64) << 32 ^ y as u64);
+            random.uniform(); // the first is close to that of the cell beside
+            let value = random.uniform();
+            if is_grey { value } else { value.round() }
+        };
+        let cell = move |x: f64| (x * f64::from(per_pixel)).floor() as i64;
+        let noise = move |p: DVec2| (grey(cell(p.x), cell(p.y)), 0);
+        let truth = truth(|x, y| {
+            let cells = (0..per_pixel).flat_map(|j| (0..per_pixel).map(move |i| (i, j)));
+            let all = cells.map(|(i, j)| grey(cell(x) + i64::from(i), cell(y) + i64::from(j)));
+            all.sum::<f64>() / f64::from(per_pixel * per_pixel)
+        });
+        for (aa, most) in ["adaptive:8", "adaptive:4"].into_iter().zip(most) {
+            let found = measure(&noise, &truth, aa);
+            println!("{per_pixel} cells, {aa}: off by {:.2}, says {:.2}", found.rmse, found.ratio);
+            assert!(found.rmse < most, "{aa}: {found:?}");
+            assert!(found.ratio > 0.5 && found.ratio < 2.0, "{aa}: {found:?}");
+        }
     }
 }
 
