@@ -174,7 +174,7 @@ impl Refined {
     /// they met.
     pub fn errors(&self, contrast: f32, busy: f32) -> (f32, f32) {
         // What differs although all met the same is noise, all of it where it is busy.
-        let noise = if self.is_alike() { busy } else { 0.0 };
+        let noise = if self.is_alike() { busy * busy * busy } else { 0.0 };
         let seen = self.spread.error(self.stage.share, noise.max(BUSY * busy));
         if self.points < 8 {
             let error = self.with_unseen(seen, contrast, busy);

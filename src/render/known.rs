@@ -74,7 +74,7 @@ impl Known {
             let suspects = window.suspects();
             let mut pixels = pixels_of(tile, &window, &suspects, centers);
             for (pixel, (x, y)) in pixels.iter_mut().zip(tile.pixels()) {
-                let (center, mut expected) = (centers.at(x, y), pixel.error);
+                let (center, mut expected) = (centers.at(x, y), pixel.worth.expected);
                 if has_hints {
                     let Hint { least, glint } = sampler.hint(x as u32, y as u32);
                     pixel.is_thin = least.is_some();
@@ -204,6 +204,8 @@ fn pixels_of(
 ) -> Vec<Pixel> {
     let smooth = |(own, noise): (f32, Noise)| Pixel {
         error: own.max(noise.error()),
+        // What the neighbours of each say is right on average.
+        worth: Worth { expected: own, ..Worth::default() },
         contrast: CONTRAST_OF_NOISE * noise.error(),
         busy: noise.busy(),
         ..Pixel::default()
@@ -213,9 +215,11 @@ fn pixels_of(
     for (place, look) in suspects {
         let (x, y) = tile.pixel_at(*place);
         let skips = skips_cells(centers, x, y, look.contrast);
+        let error = look.center_error();
         pixels[*place] = Pixel {
             suspect: true,
-            error: look.center_error(),
+            error,
+            worth: Worth { expected: error, ..Worth::default() },
             least: if skips { LEAST_IN_CELLS } else { Least::default() },
             contrast: look.contrast,
             busy: look.busy,
