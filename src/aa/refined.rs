@@ -168,7 +168,8 @@ impl Refined {
     }
 
     /// The colour's squared error: rather too large than too small, for this pixel; and as it is on average, for sums
-    /// over many. `contrast` and `busy` are those of the pixel's [`Look`](super::estimate::Look), zero unless suspect.
+    /// over many. `contrast` and `busy` are those of the pixel's [`Look`](super::estimate::Look) if it is
+    /// suspect, those of the noise about it if all neighbours met the same.
     ///
     /// From 8 samples on the second comes from what the quarters of the samples differ by, which knows nothing of what
     /// they met.

@@ -64,9 +64,9 @@ pub(super) struct Pixel {
     pub(super) suspect: bool,
     /// The estimated squared error in levels, by which it is refined.
     pub(super) error: f32,
-    /// The contrast to the neighbours, zero unless suspect.
+    /// The contrast to the neighbours; zero unless suspect or amid noise.
     pub(super) contrast: f32,
-    /// How often things change around, from 0 to 1; zero unless suspect.
+    /// How often things change around, from 0 to 1; zero unless suspect or amid noise.
     pub(super) busy: f32,
     /// Whether something thin is known to be in it.
     pub(super) is_thin: bool,
