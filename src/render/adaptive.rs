@@ -1,6 +1,6 @@
 //! Rays where the picture needs them: centres find the suspects, corners rank them, sequences of samples settle them.
 //!
-//! What becomes of a pixel depends on the samples within one pixel around it, and on nothing that other pixels decide.
+//! What becomes of a pixel depends on the samples within two pixels around it, and on nothing that other pixels decide.
 
 use std::sync::{
     Mutex, PoisonError,

@@ -15,8 +15,8 @@ pub(super) const TILE_SIDE: u32 = 16;
 /// Values that a thread takes at least, where all of a plane's are gone through.
 const AT_ONCE: usize = 1 << 14;
 
-/// A rectangle of pixels, half open, in columns and rows of the whole picture; those of its apron have -1 and width or
-/// height.
+/// A rectangle of pixels, half open, in columns and rows of the whole picture; those of its apron are negative, or from
+/// width or height on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Area {
     pub(super) x0: i64,
