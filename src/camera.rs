@@ -6,6 +6,7 @@ use thiserror::Error;
 use crate::{
     geometry::{Ray, Similarity},
     math::scale,
+    trace::Cone,
 };
 
 /// A pinhole camera.
@@ -130,6 +131,11 @@ impl View {
     /// The length that a pixel covers at depth 1.
     pub fn pixel(&self) -> f64 {
         self.right.length()
+    }
+
+    /// What a ray stands for if that is a square of so many pixels a side.
+    pub(crate) fn cone(&self, side: f64) -> Cone {
+        Cone { axis: self.forward, width: self.pixel() * side }
     }
 
     /// The ray, of unit direction, through a place on the film in pixels from its upper left corner: the centre of the first

@@ -55,6 +55,11 @@ impl Material {
         self.transmission != Rgb::ZERO
     }
 
+    /// Whether rays go on from where they meet it.
+    pub fn sends_on(&self) -> bool {
+        self.reflection > 0.0 || self.is_transmissive()
+    }
+
     /// The same material in a scene whose coordinates were changed by `map`.
     #[must_use]
     pub fn mapped(self, map: &Similarity) -> Self {

@@ -26,19 +26,20 @@ pub const BUSY: f32 = 0.6;
 /// The least of [`Look::busy`] for a pixel between two that differ from it.
 const BETWEEN: f32 = 0.75;
 
-/// The error of a centre's colour where the neighbours' rays all met the same, from the squared second differences
-/// `curve` and the squared differences `slope` of opposite neighbours, each horizontal and vertical; `corrected` is
-/// whether the second-order term of the box integral was added. Without a branch, for loops over pixels.
-///
-/// The share of the second differences grows as they outweigh the slope: from what is left of a smooth function to all
-/// of a noise's variance.
+/// The error of a centre's colour where the neighbours' rays all met the same, without [that of noise](noise_error), from
+/// the squared second differences `curve`, horizontal and vertical; `corrected` is whether the second-order term of the
+/// box integral was added.
 #[inline(always)]
-pub fn smooth_error(curve: f32, slope: f32, corrected: bool) -> f32 {
-    let share = if corrected { CORRECTED_CURVE } else { CENTER_CURVE };
-    curve * share + noise_error(curve, slope)
+pub fn curve_error(curve: f32, corrected: bool) -> f32 {
+    curve * if corrected { CORRECTED_CURVE } else { CENTER_CURVE }
 }
 
-/// The part of it that is noise's.
+/// The error of a centre's colour if what the neighbours differ by is noise as far as it follows no slope, from the
+/// squared second differences `curve` and the squared differences `slope` of opposite neighbours, each horizontal and
+/// vertical. Without a branch, for loops over pixels.
+///
+/// It grows as the second differences outweigh the slope: from nothing for a smooth function to all of a noise's
+/// variance.
 #[inline(always)]
 pub fn noise_error(curve: f32, slope: f32) -> f32 {
     // 3 for noise. A slope of zero gives 1, also without a curve.
@@ -120,7 +121,8 @@ impl Look {
 
     /// The error of the centre's colour.
     pub fn center_error(&self) -> f32 {
-        edge_error(self.edge).max(smooth_error(self.curve, self.slope, false))
+        let smooth = curve_error(self.curve, false) + noise_error(self.curve, self.slope);
+        edge_error(self.edge).max(smooth)
     }
 }
 

@@ -4,6 +4,8 @@
 //! cancels. Where it runs along the columns, every row is off by as much, up to half the distance of two columns, and nothing that
 //! samples of the pixel differ by shows how much.
 
+use glam::Vec3;
+
 use super::{
     Sample,
     levels::{levels, squared_distance},
@@ -13,6 +15,9 @@ use crate::color::Rgb;
 /// In so many cases a thing that a single line met is narrower than the distance of two lines. In the others it is up to twice as wide,
 /// and off by little.
 const NARROW: f32 = 0.6;
+
+/// Samples that differ by less than this part of what is expected of independent ones are of something even.
+const EVEN: f32 = 0.1;
 
 /// The columns of a grid of samples, or its rows, each of which met one thing only, but not all the same.
 #[derive(Clone, Copy, Debug)]
@@ -85,6 +90,21 @@ impl<'a> Lines<'a> {
     fn color(&self, line: usize) -> Rgb {
         self.of_line(line).map(|sample| sample.color).sum::<Rgb>() / self.side as f32
     }
+}
+
+/// Whether the samples of a grid of `side` × `side`, in levels, differ along its rows, or along its columns, by much less
+/// than pictures would make them that each is off by, which is `detail` on average: what they show runs that way.
+pub fn is_even_along_lines(side: usize, levels: &[Vec3], detail: f32) -> bool {
+    let differences = |from_line: usize, along: usize| {
+        let line = |line: usize| (0..side).map(move |k| levels[line * from_line + k * along]);
+        let of_line = |number: usize| {
+            let mean = line(number).sum::<Vec3>() / side as f32;
+            line(number).map(|sample| squared_distance(sample, mean)).sum::<f32>()
+        };
+        (0..side).map(of_line).sum::<f32>()
+    };
+    let expected = detail * (side * (side - 1)) as f32;
+    differences(1, side).min(differences(side, 1)) < EVEN * expected
 }
 
 /// The squared error, in levels, of a pixel of the colour `here`, whose edge is one between things of this and another colour, with

@@ -1,5 +1,6 @@
 //! Anti-aliasing: which places of a pixel are asked for their colour, what the pixel becomes, and how far off it is.
 
+pub mod detail;
 pub mod estimate;
 pub mod kinds;
 pub mod levels;
@@ -113,6 +114,15 @@ impl Default for AntiAliasing {
 impl AntiAliasing {
     /// The adaptive mode as it is without further numbers: errors of 4 levels, 64 rays per pixel.
     pub const ADAPTIVE: Self = Self::Adaptive { error: DEFAULT_ERROR, most: DEFAULT_MOST };
+
+    /// The side of what a sample stands for, in pixels: that of the whole pixel where samples are added as they are needed.
+    pub(crate) fn side_of_sample(self) -> f64 {
+        match self {
+            Self::None | Self::Adaptive { .. } => 1.0,
+            Self::Grid { side } => 1.0 / f64::from(side),
+            Self::Sequence { count } => 1.0 / f64::from(count).sqrt(),
+        }
+    }
 }
 
 /// The places of a grid's samples in the pixel whose upper left corner on the film is `corner`, row by row.

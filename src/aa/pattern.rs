@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::{
     Sample,
     estimate::{Spread, by_logarithms, sequence_unseen},
-    lines::Lines,
+    lines::{Lines, is_even_along_lines},
 };
 
 /// A pattern of samples.
@@ -39,6 +39,15 @@ impl Pattern {
         }
         let variance = self.variance(levels.iter().copied());
         part * interleaved_share(side) * variance.element_sum() / 3.0
+    }
+
+    /// The squared error of the mean of samples of these `levels`, each of which is off by `detail` on average, squared,
+    /// because of pictures finer than it: as of independent ones, or of independent lines of a grid.
+    pub fn picture_error(self, levels: &[Vec3], detail: f32) -> f32 {
+        match self {
+            Self::Grid(side) if is_even_along_lines(side, levels, detail) => detail / side as f32,
+            _ => detail / levels.len() as f32,
+        }
     }
 
     /// The share of the neighbours' contrast that may hide between equal samples.

@@ -3,6 +3,7 @@
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
+use super::detail::Detail;
 use super::estimate::{BUSY, Spread, all_alike, quarters_share, sequence_share, sequence_unseen};
 use super::levels::{error_of_light, levels, squared_distance};
 use crate::color::Rgb;
@@ -19,6 +20,8 @@ pub struct Sample {
     pub signature: u32,
     /// A number of the cells of patterns that show, directly or by what is reflected and transmitted; 0 for none.
     pub cell: u32,
+    /// What it shows of pictures that are finer than it: than the pixel for the centre, than a cell for one of many.
+    pub detail: Detail,
     /// How many rays it took, those towards the lights included.
     pub rays: u32,
 }
@@ -169,22 +172,23 @@ impl Refined {
 
     /// The colour's squared error: rather too large than too small, for this pixel; and as it is on average, for sums
     /// over many. `contrast` and `busy` are those of the pixel's [`Look`](super::estimate::Look) if it is
-    /// suspect, those of the noise about it if all neighbours met the same.
+    /// suspect, those of the noise about it if all neighbours met the same; `detail` is that of its centre. Noise of a picture
+    /// ends where its texels are smooth, other noise does not.
     ///
     /// From 8 samples on the second comes from what the quarters of the samples differ by, which knows nothing of what
     /// they met.
-    pub fn errors(&self, contrast: f32, busy: f32) -> (f32, f32) {
+    pub fn errors(&self, contrast: f32, busy: f32, detail: Detail) -> (f32, f32) {
         // What differs although all met the same is noise, all of it where it is busy.
-        let noise = if self.is_alike() { busy * busy * busy } else { 0.0 };
+        let noise = if self.is_alike() && !detail.is_whole() { busy * busy * busy } else { 0.0 };
         let seen = self.spread.error(self.stage.share, noise.max(BUSY * busy));
         if self.points < 8 {
-            let error = self.with_unseen(seen, contrast, busy);
+            let error = self.with_unseen(seen, (contrast, busy), detail);
             return (error, error);
         }
         let share =
             if noise > 0.0 { self.stage.quarters.powf(1.0 - noise) } else { self.stage.quarters };
         let quartered = share * self.quarters.variance();
-        let error = |seen: f32| self.with_unseen(seen, contrast, busy);
+        let error = |seen: f32| self.with_unseen(seen, (contrast, busy), detail);
         (error(seen.max(quartered)), error(quartered))
     }
 
@@ -202,14 +206,16 @@ impl Refined {
         Some(error_of_light(self.color(), off))
     }
 
-    /// The error with that of what may hide between the samples: little if they all met the same; much if they met different things
-    /// of one colour, as where a pixel skips cells of a pattern.
-    fn with_unseen(&self, seen: f32, contrast: f32, busy: f32) -> f32 {
-        let hidden = all_alike(self.spread.count()) / 8.0;
+    /// The error with that of what may hide between the samples: little if they all met the same, unless they are of a
+    /// picture that has more detail; much if they met different things of one colour, as where a pixel skips cells of a
+    /// pattern.
+    fn with_unseen(&self, seen: f32, (contrast, busy): (f32, f32), detail: Detail) -> f32 {
+        let alike = all_alike(self.spread.count());
+        let (hidden, in_picture) = (alike / 8.0 * contrast, alike * 2.0 * detail.squared_error());
         if self.spread.kinds() > 1 {
-            return seen.max(hidden * contrast);
+            return seen.max(hidden).max(in_picture);
         }
-        seen + self.stage.unseen.max(busy * hidden) * contrast
+        seen + (self.stage.unseen * contrast).max(busy * hidden).max(in_picture)
     }
 }
 

@@ -96,6 +96,22 @@ impl Face {
         surface
     }
 
+    /// [`Shape::uv_gradients`](super::Shape::uv_gradients).
+    pub(super) fn uv_gradients(&self) -> [DVec3; 2] {
+        let uvs = &self.mesh.attributes.uvs;
+        if uvs.is_empty() {
+            return [DVec3::ZERO; 2];
+        }
+        let ([a, b, c], corners) = (self.vertices(), self.mesh.triangles[self.index as usize]);
+        let [at_a, at_b, at_c] = corners.map(|v| uvs[v as usize].as_dvec2());
+        let normal = (b - a).cross(c - a);
+        // Of the weights of the second and third corner.
+        let (second, third) = ((c - a).cross(normal), normal.cross(b - a));
+        let (to_b, to_c) = (at_b - at_a, at_c - at_a);
+        [[to_b.x, to_c.x], [to_b.y, to_c.y]]
+            .map(|[to_b, to_c]| (second * to_b + third * to_c) / normal.length_squared())
+    }
+
     /// The normals at the corners, unless the face is flat.
     fn corner_normals(&self) -> Option<[DVec3; 3]> {
         let normals = &self.mesh.attributes.normals;

@@ -79,6 +79,11 @@ impl Quad {
         DVec2::new(u.dot(local), v.dot(local))
     }
 
+    /// [`Shape::uv_gradients`](super::Shape::uv_gradients).
+    pub(super) fn uv_gradients(&self) -> [DVec3; 2] {
+        self.gradients
+    }
+
     /// A point of the plane, and its unit normal.
     #[inline(always)]
     pub(super) fn plane(&self) -> (DVec3, DVec3) {

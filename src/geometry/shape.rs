@@ -258,6 +258,18 @@ impl Shape {
         }
     }
 
+    /// How the surface coordinates change, per unit of length; not at all on shapes without them. Along the normal that
+    /// means nothing.
+    #[inline(always)]
+    pub(crate) fn uv_gradients(&self) -> [DVec3; 2] {
+        match self.both_sided() {
+            Self::Sphere(s) => s.uv_gradients(),
+            Self::Quad(s) => s.uv_gradients(),
+            Self::Face(s) => s.uv_gradients(),
+            _ => [DVec3::ZERO; 2],
+        }
+    }
+
     /// Where a shadow ray from `surface` should start, measured from the flat point: see [`Face::shadow_offset`].
     #[inline]
     pub(crate) fn shadow_offset(&self, surface: &Surface, inward: bool) -> DVec3 {

@@ -115,6 +115,11 @@ impl Sphere {
         Surface { local: surfaces.local.get(lane), ..Surface::plain(point, normal, error) }
     }
 
+    /// [`Shape::uv_gradients`](super::Shape::uv_gradients).
+    pub(super) fn uv_gradients(&self) -> [DVec3; 2] {
+        [DVec3::X, DVec3::Y].map(|axis| axis / (2.0 * self.radius))
+    }
+
     /// The surface coordinates where the normal is this.
     #[inline(always)]
     pub(super) fn uv(normal: DVec3) -> DVec2 {

@@ -49,9 +49,10 @@ impl Judge {
         seen.clear();
         seen.extend(samples.iter().map(|sample| levels(sample.color)));
         spread.restart(seen[0]);
-        let mut sum = Rgb::ZERO;
+        let (mut sum, mut detail) = (Rgb::ZERO, 0.0);
         for (sample, levels) in samples.iter().zip(&*seen) {
             sum += sample.color;
+            detail += sample.detail.squared_error();
             spread.add(*levels, sample.signature);
         }
         let color = sum / samples.len() as f32;
@@ -64,13 +65,15 @@ impl Judge {
             let colors = samples.iter().map(|sample| sample.color);
             [of_variance(pattern.variance(colors)); 2]
         };
+        let detail = detail / samples.len() as f32;
+        let finer = if detail > 0.0 { pattern.picture_error(seen, detail) } else { 0.0 };
         let is_by_chance = kinds.has_few_others();
         let only = spread.only_signature();
         Cell {
             color,
             signature: only.unwrap_or(own_number),
             alike: only.is_some(),
-            error: pattern.error(seen, spread).max(along),
+            error: pattern.error(seen, spread).max(along).max(finer),
             kinds,
             by_chance: if is_by_chance { lone.unwrap_or_else(scattered) } else { [0.0; 2] },
         }

@@ -16,7 +16,7 @@ use super::{
     round::{Chosen, Pixel, Threshold, Unseen, is_disputed, is_picked},
 };
 use crate::{
-    aa::{Sample, estimate::Look, refined::Stage},
+    aa::{Sample, detail::Detail, estimate::Look, refined::Stage},
     color::Rgb,
 };
 
@@ -202,20 +202,23 @@ fn pixels_of(
     suspects: &[(usize, Look)],
     centers: &Plane<Sample>,
 ) -> Vec<Pixel> {
-    let smooth = |(own, noise): (f32, Noise)| Pixel {
+    let smooth = |((own, noise), detail): ((f32, Noise), Detail)| Pixel {
         error: own.max(noise.error()),
         // What the neighbours of each say is right on average.
         worth: Worth { expected: own, ..Worth::default() },
         contrast: CONTRAST_OF_NOISE * noise.error(),
         busy: noise.busy(),
+        detail,
         ..Pixel::default()
     };
     let errors = window.smooth_errors(true).into_iter().zip(window.noise_around());
+    let errors = errors.zip(tile.pixels().map(|(x, y)| centers.at(x, y).detail));
     let mut pixels: Vec<Pixel> = errors.map(smooth).collect();
     for (place, look) in suspects {
         let (x, y) = tile.pixel_at(*place);
         let skips = skips_cells(centers, x, y, look.contrast);
-        let error = look.center_error();
+        let detail = centers.at(x, y).detail;
+        let error = look.center_error().max(detail.squared_error());
         pixels[*place] = Pixel {
             suspect: true,
             error,
@@ -223,6 +226,7 @@ fn pixels_of(
             least: if skips { LEAST_IN_CELLS } else { Least::default() },
             contrast: look.contrast,
             busy: look.busy,
+            detail,
             ..Pixel::default()
         };
     }

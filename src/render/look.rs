@@ -6,9 +6,9 @@ use super::plane::{Area, Plane, TILE_SIDE};
 use crate::{
     aa::{
         Sample,
+        detail::Detail,
         estimate::{
-            Look, NEIGHBOURS, busy_of_noise, edge_error, most_noise_error, noise_error,
-            smooth_error,
+            Look, NEIGHBOURS, busy_of_noise, curve_error, edge_error, most_noise_error, noise_error,
         },
         levels::levels,
     },
@@ -28,6 +28,9 @@ pub(super) struct Window {
     /// Display levels, channel by channel.
     levels: [Vec<f32>; 3],
     signatures: Vec<u32>,
+    /// The squared errors of pictures; and 1, or 0 where there is no noise but that of a picture. Empty without pictures.
+    details: Vec<f32>,
+    guessed: Vec<f32>,
     around: Area,
     /// The pixels between the edges of the tile and of the window.
     margin: usize,
@@ -75,16 +78,18 @@ impl Row {
 }
 
 impl Window {
-    /// The window `margin` pixels about `tile` of a plane, from whose entries `see` makes colours and signatures.
+    /// The window `margin` pixels about `tile` of a plane, from whose entries `see` makes colours, signatures and details.
     pub(super) fn new<T>(
         (tile, margin): (&Area, usize),
         plane: &Plane<T>,
-        see: impl Fn(&T) -> (Rgb, u32),
+        see: impl Fn(&T) -> (Rgb, u32, Detail),
     ) -> Self {
         let around = tile.grown(margin as i64);
         let mut window = Self {
             levels: std::array::from_fn(|_| vec![0.0; around.len()]),
             signatures: vec![0; around.len()],
+            details: Vec::new(),
+            guessed: Vec::new(),
             around,
             margin,
         };
@@ -92,21 +97,34 @@ impl Window {
         for y in around.y0..around.y1 {
             let row = plane.nearest_row(y);
             for x in around.x0..around.x1 {
-                let (color, signature) = see(&row[plane.nearest_column(x)]);
+                let (color, signature, detail) = see(&row[plane.nearest_column(x)]);
                 let levels = levels(color);
                 window.levels[0][place] = levels.x;
                 window.levels[1][place] = levels.y;
                 window.levels[2][place] = levels.z;
                 window.signatures[place] = signature;
+                if detail != Detail::default() {
+                    window.set_detail(place, detail);
+                }
                 place += 1;
             }
         }
         window
     }
 
+    fn set_detail(&mut self, place: usize, detail: Detail) {
+        if self.details.is_empty() {
+            self.details = vec![0.0; self.around.len()];
+            self.guessed = vec![1.0; self.around.len()];
+        }
+        self.details[place] = detail.squared_error();
+        self.guessed[place] = if detail.is_whole() { 0.0 } else { 1.0 };
+    }
+
     /// The window `margin` pixels about `tile` of traced centres.
     pub(super) fn of_centers(tile: &Area, margin: usize, centers: &Plane<Sample>) -> Self {
-        Self::new((tile, margin), centers, |sample| (sample.color, sample.signature))
+        let see = |sample: &Sample| (sample.color, sample.signature, sample.detail);
+        Self::new((tile, margin), centers, see)
     }
 
     /// The estimated squared error of each of the tile's centres, row by row, as if their neighbours had met the same;
@@ -114,9 +132,9 @@ impl Window {
     pub(super) fn smooth_errors(&self, corrected: bool) -> Vec<f32> {
         let mut errors = Vec::with_capacity(self.around.len());
         for row in self.rows(0) {
-            let (curve, slope) = self.bends(&row);
-            let each = curve[..row.count()].iter().zip(&slope);
-            errors.extend(each.map(|(c, s)| smooth_error(*c, *s, corrected)));
+            let bends = self.bends(&row);
+            let off = self.off(&row, &bends, |curve| curve_error(curve, corrected));
+            errors.extend(&off[..row.count()]);
         }
         errors
     }
@@ -124,13 +142,10 @@ impl Window {
     /// The noise about each pixel of the tile, row by row. Takes a margin of two pixels.
     pub(super) fn noise_around(&self) -> Vec<Noise> {
         let noise_of = |row: Row| {
-            let (curve, slope) = self.bends(&row);
-            let differing = self.differing(&row);
+            let bends = self.bends(&row);
+            let (noise, differing) = (self.off(&row, &bends, |_| 0.0), self.differing(&row));
             let each: [Noise; SIDE] = std::array::from_fn(|k| match differing[k] {
-                0 => Noise {
-                    error: noise_error(curve[k], slope[k]),
-                    most: most_noise_error(curve[k]),
-                },
+                0 => Noise { error: noise[k], most: most_noise_error(bends.0[k]) },
                 _ => Noise::default(),
             });
             each
@@ -144,6 +159,27 @@ impl Window {
             around.extend((0..count).map(|k| sum[k].and(sum[k + 1]).and(sum[k + 2])));
         }
         around
+    }
+
+    /// The squared errors of the pixels of a row with these [`bends`](Self::bends): what `smooth` says of the second
+    /// differences, and noise, as far as the pixel's picture does not tell; at least that of the picture.
+    #[inline(always)]
+    fn off(
+        &self,
+        row: &Row,
+        (curve, slope): &([f32; SIDE], [f32; SIDE]),
+        smooth: impl Fn(f32) -> f32,
+    ) -> [f32; SIDE] {
+        let mut off = std::array::from_fn(|k| smooth(curve[k]) + noise_error(curve[k], slope[k]));
+        if !self.details.is_empty() {
+            let (first, count) = (row.starts[1] + 1, row.count());
+            let details = self.details[first..][..count].iter().zip(&self.guessed[first..]);
+            for (k, (detail, guessed)) in details.enumerate() {
+                let noise = noise_error(curve[k], slope[k]) * guessed;
+                off[k] = (smooth(curve[k]) + noise).max(*detail);
+            }
+        }
+        off
     }
 
     /// The squared second differences of the pixels of a row, and the squared differences of their opposite neighbours, each the

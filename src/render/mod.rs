@@ -260,11 +260,14 @@ pub fn render_blocks(
         None => options.aa != AntiAliasing::None,
     };
     let hints = hints.and_then(|hints| hints.pixels);
+    // Single rays through the centres tell of each other, if pictures are not too regular.
+    let looks_into_pictures = options.aa != AntiAliasing::None && scene.has_pictures();
+    let cone = looks_into_pictures.then(|| view.cone(options.aa.side_of_sample()));
     let at_once = places_at_once(scene);
     let block = |number: usize, place: &Tile, progress: &(dyn Fn(Progress) + Sync)| {
         let rays = Mutex::new(RayCounts::default());
         let new_sampler = || Worker {
-            tracer: Tracer::new(scene, depth, tells_highlights),
+            tracer: Tracer::new(scene, depth, cone, tells_highlights),
             view,
             traced: Vec::new(),
             at_once,

@@ -12,7 +12,7 @@ use super::{
     look::Window,
     plane::{Area, Plane},
 };
-use crate::aa::{Sample, grid_places, pattern::Pattern, sobol::Sequence};
+use crate::aa::{Sample, detail::Detail, grid_places, pattern::Pattern, sobol::Sequence};
 
 /// One ray through each centre.
 pub(super) fn centers<S: Sampler + Send>(crew: &Crew<S>, area: &Area) -> Picture {
@@ -102,7 +102,8 @@ fn even<S: Sampler + Send>(
     );
     let cells = cells.into_inner().unwrap_or_else(PoisonError::into_inner);
     let squared_error = sum_of_tiles(area, |tile| {
-        let window = Window::new((tile, 1), &cells, |cell| (cell.color, cell.signature));
+        let see = |cell: &Cell| (cell.color, cell.signature, Detail::default());
+        let window = Window::new((tile, 1), &cells, see);
         if count == 1 {
             let errors = window.center_errors();
             return ANY_PLACE * errors.into_iter().map(f64::from).sum::<f64>();

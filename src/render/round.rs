@@ -14,6 +14,7 @@ use super::{
 use crate::{
     aa::{
         Sample,
+        detail::Detail,
         levels::{levels, squared_distance},
         refined::{Refined, Stage},
         sobol::{Sequence, hash},
@@ -68,6 +69,8 @@ pub(super) struct Pixel {
     pub(super) contrast: f32,
     /// How often things change around, from 0 to 1; zero unless suspect or amid noise.
     pub(super) busy: f32,
+    /// What its centre shows of pictures.
+    pub(super) detail: Detail,
     /// Whether something thin is known to be in it.
     pub(super) is_thin: bool,
     /// Samples of the sequence that it gets whatever its error, unless time is short.
@@ -204,7 +207,7 @@ impl Round<'_> {
     /// Takes over what is known of a pixel after a stage.
     fn judge(&self, one: &mut Chosen, refined: Box<Refined>) {
         let pixel = &mut one.pixel;
-        let (mut error, mut expected) = refined.errors(pixel.contrast, pixel.busy);
+        let (mut error, mut expected) = refined.errors(pixel.contrast, pixel.busy, pixel.detail);
         let points = refined.points();
         let may_go_on = self.stages.last().is_some_and(|last| points < last.points);
         let unseen = pixel.unseen.error_after(points);

@@ -61,6 +61,7 @@ impl Sampler for Worker<'_> {
                 color: traced.color.max(Rgb::ZERO).min(Rgb::ONE),
                 signature: traced.signature,
                 cell: traced.cell,
+                detail: traced.detail,
                 rays: traced.rays,
             }));
         }

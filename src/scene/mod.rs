@@ -271,6 +271,11 @@ impl Scene {
         self.shape(hit.primitive).surface(ray, hit)
     }
 
+    /// Whether any material wears a picture.
+    pub(crate) fn has_pictures(&self) -> bool {
+        self.materials.iter().any(|material| material.texture.needs_uv())
+    }
+
     pub(crate) fn material(&self, primitive: u32) -> &Material {
         &self.materials[self.material_of[primitive as usize] as usize]
     }

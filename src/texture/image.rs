@@ -5,6 +5,7 @@ use std::{io::Cursor, sync::OnceLock};
 use glam::DVec2;
 use thiserror::Error;
 
+use super::pyramid::Pyramid;
 use crate::{
     color::{Rgb, srgb_to_linear},
     decode::decode,
@@ -18,18 +19,39 @@ const MOST_TEXELS: u64 = 1 << 26;
 const LARGEST_MEMORY: u64 = MOST_TEXELS * 8;
 
 /// A picture, its rows from top to bottom, as bytes that are decoded to linear light when they are looked up.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Image {
     width: usize,
     height: usize,
     texels: Vec<[u8; 3]>,
+    /// Made when it is first asked for.
+    pyramid: OnceLock<Pyramid>,
+}
+
+impl PartialEq for Image {
+    fn eq(&self, other: &Self) -> bool {
+        self.width == other.width && self.texels == other.texels
+    }
 }
 
 /// What goes on beyond the edges of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Beyond {
+pub(super) enum Beyond {
     Edge,
     Again,
+}
+
+impl Beyond {
+    /// The two of `count` entries between which place `x` is, entry 0 being at 0, and how far it is on the way.
+    #[inline(always)]
+    fn between(self, x: f64, count: usize) -> (usize, usize, f32) {
+        let first = x.floor();
+        let entry = |i: f64| match self {
+            Self::Edge => i.clamp(0.0, (count - 1) as f64) as usize, // NaN is 0
+            Self::Again => (i.rem_euclid(count as f64) as usize).min(count - 1),
+        };
+        (entry(first), entry(first + 1.0), (x - first) as f32)
+    }
 }
 
 /// Why a picture cannot be used as a texture.
@@ -56,6 +78,12 @@ pub enum ImageTextureError {
         /// The largest number of texels.
         most: u64,
     },
+}
+
+/// Where in the picture `uv` is, if it is repeated.
+fn repeated(uv: DVec2) -> DVec2 {
+    let uv = uv - uv.floor();
+    if uv.is_finite() { uv } else { DVec2::ZERO }
 }
 
 /// The linear values of the 256 levels of a texel.
@@ -94,12 +122,26 @@ impl Image {
             width: picture.width() as usize,
             height: picture.height() as usize,
             texels: picture.pixels().map(|p| p.0).collect(),
+            pyramid: OnceLock::new(),
         })
+    }
+
+    /// A picture of so many columns and rows, by the levels of its texels.
+    #[cfg(test)]
+    pub(super) fn from_levels([width, height]: [usize; 2], levels: &[u8]) -> Self {
+        let texels = levels.as_chunks().0.to_vec();
+        assert_eq!(texels.len(), width * height);
+        Self { width, height, texels, pyramid: OnceLock::new() }
     }
 
     /// Columns and rows of texels.
     pub(crate) fn size(&self) -> [usize; 2] {
         [self.width, self.height]
+    }
+
+    /// All texels, row by row from the top.
+    pub(super) fn texels(&self) -> &[[u8; 3]] {
+        &self.texels
     }
 
     /// The levels of all texels, three bytes each, row by row from the top.
@@ -118,28 +160,44 @@ impl Image {
 
     /// As [`Image::sample`], but the picture is repeated in all directions.
     pub fn sample_repeated(&self, uv: DVec2) -> Rgb {
-        let uv = uv - uv.floor();
-        self.bilinear(if uv.is_finite() { uv } else { DVec2::ZERO }, Beyond::Again)
+        self.bilinear(repeated(uv), Beyond::Again)
+    }
+
+    /// The squared error, in levels of 255, of the colour at `uv` as the mean of what is around it, `across` which the
+    /// coordinates change by so much, squared.
+    #[inline(always)]
+    pub(super) fn detail(&self, uv: DVec2, across: DVec2) -> f32 {
+        self.detail_at(uv, across, Beyond::Edge)
+    }
+
+    /// As [`Image::detail`], but the picture is repeated in all directions.
+    pub(super) fn detail_repeated(&self, uv: DVec2, across: DVec2) -> f32 {
+        self.detail_at(repeated(uv), across, Beyond::Again)
+    }
+
+    #[inline(always)]
+    fn detail_at(&self, uv: DVec2, across: DVec2, beyond: Beyond) -> f32 {
+        let texels = DVec2::new(self.width as f64, self.height as f64);
+        let square = across.dot(texels * texels);
+        if !(square > 1.0) {
+            return 0.0; // texels side by side, or no number
+        }
+        let place = DVec2::new(uv.x, 1.0 - uv.y) * texels;
+        self.pyramid.get_or_init(|| Pyramid::of(self)).at(place.to_array(), square.sqrt(), beyond)
     }
 
     #[inline(always)]
     fn bilinear(&self, uv: DVec2, beyond: Beyond) -> Rgb {
         let x = uv.x * self.width as f64 - 0.5;
         let y = (1.0 - uv.y) * self.height as f64 - 0.5;
-        let (column, row) = (x.floor(), y.floor());
-        let (p, q) = ((x - column) as f32, (y - row) as f32);
-        let place = |i: f64, count: usize| match beyond {
-            Beyond::Edge => i.clamp(0.0, (count - 1) as f64) as usize, // NaN is 0
-            Beyond::Again => (i.rem_euclid(count as f64) as usize).min(count - 1),
-        };
-        let (x0, x1) = (place(column, self.width), place(column + 1.0, self.width));
-        let (y0, y1) =
-            (place(row, self.height) * self.width, place(row + 1.0, self.height) * self.width);
+        let (x0, x1, p) = beyond.between(x, self.width);
+        let (y0, y1, q) = beyond.between(y, self.height);
         let levels = levels();
         let texel =
             |at: usize| Rgb::from_array(self.texels[at].map(|byte| levels[usize::from(byte)]));
-        let upper = texel(y0 + x0).lerp(texel(y0 + x1), p);
-        let lower = texel(y1 + x0).lerp(texel(y1 + x1), p);
+        let (above, below) = (y0 * self.width, y1 * self.width);
+        let upper = texel(above + x0).lerp(texel(above + x1), p);
+        let lower = texel(below + x0).lerp(texel(below + x1), p);
         upper.lerp(lower, q)
     }
 }

@@ -2,6 +2,7 @@
 
 pub mod image;
 pub mod pattern;
+mod pyramid;
 
 use std::sync::Arc;
 
@@ -60,6 +61,20 @@ impl Texture {
             Self::Repeated(image, map) => {
                 let uv = at.uv * map.scale + map.offset;
                 (if map.clamp { image.sample(uv) } else { image.sample_repeated(uv) }, 0)
+            }
+        }
+    }
+
+    /// The squared error, in levels of 255, of the colour at `uv` as the mean of what is around it, `across` which the
+    /// coordinates change by so much, squared. Patterns have cells instead.
+    #[inline(always)]
+    pub(crate) fn detail(&self, uv: DVec2, across: DVec2) -> f32 {
+        match self {
+            Self::Solid(_) | Self::Checker(_) | Self::Plaid(_) => 0.0,
+            Self::Image(image) => image.detail(uv, across),
+            Self::Repeated(image, map) => {
+                let (uv, across) = (uv * map.scale + map.offset, across * map.scale * map.scale);
+                if map.clamp { image.detail(uv, across) } else { image.detail_repeated(uv, across) }
             }
         }
     }

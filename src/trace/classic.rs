@@ -84,7 +84,7 @@ impl<'a> ClassicTracer<'a> {
         let side = if front { 1.0 } else { -1.0 };
         let normal = surface.shading * side;
         if level < CLASSIC_DEPTH {
-            if material.reflection > 0.0 || material.is_transmissive() {
+            if material.sends_on() {
                 let onward = surface.leave(hit, reflect(ray.dir, normal), !front);
                 self.counts.reflected += 1;
                 self.tasks.push((onward, weight * material.reflection, level + 1));

@@ -1,6 +1,6 @@
 //! The hits of a batch that show their own colour, while the lights are added; a lane for each.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::{
     Batch, shadow,
@@ -8,6 +8,7 @@ use super::{
     signature::{self, Path},
 };
 use crate::{
+    aa::detail::Detail,
     color::Rgb,
     geometry::lanes::{
         Column, Departures, HitLanes, LANES, RayLanes, SurfaceLanes, Vectors, hull, lanes,
@@ -221,38 +222,74 @@ impl Lit {
         Wish { scattered: self.scatter[k] * self.cosine[k] as f32, shine, is_inner }
     }
 
-    /// The light that the hit of a lane gives back, its signature, and a number of the cell of its pattern.
+    /// What the hit of a lane shows; `uv_across` is how much the surface coordinates change across
+    /// what its ray stands for, squared, if that is wanted.
     #[inline(always)]
-    pub(super) fn show(&self, k: usize, material: &Material) -> (Rgb, u32, u32) {
+    pub(super) fn show(&self, k: usize, material: &Material, uv_across: Option<DVec2>) -> Shown {
         let (diffuse, specular) = self.so_far(k);
-        let pigment = if diffuse == Rgb::ZERO { None } else { self.pigment(k, material) };
+        let pigment =
+            if diffuse == Rgb::ZERO { None } else { self.pigment(k, material, uv_across) };
         shown(diffuse, specular, Path::of(self.path[k]), pigment)
     }
 
-    /// The part of scattered light that the hit of a lane gives back, and the cell of its pattern; `None` if all goes
-    /// through.
+    /// How the hit of a lane scatters light; `None` if all goes through.
     #[inline(always)]
-    pub(super) fn pigment(&self, k: usize, material: &Material) -> Option<(Rgb, u32)> {
+    pub(super) fn pigment(
+        &self,
+        k: usize,
+        material: &Material,
+        uv_across: Option<DVec2>,
+    ) -> Option<Pigment> {
         if !(material.opacity > 0.0) {
             return None;
         }
         let at = TexturePoint { uv: self.surfaces.uv[k], point: self.surfaces.point.get(k) };
-        let (color, cell) = material.texture.at(&at);
-        Some((color * self.surfaces.tint[k] * material.opacity, cell))
+        let (texture, part) = (&material.texture, self.surfaces.tint[k] * material.opacity);
+        let (color, cell) = texture.at(&at);
+        let mut detail = Detail::default();
+        if let Some(across) = uv_across {
+            detail = detail.and(texture.detail(at.uv, across) * part.max_element());
+            if !material.sends_on() {
+                detail = detail.whole();
+            }
+        }
+        Some(Pigment { color: color * part, cell, detail })
     }
 }
 
-/// The light that a hit gives back that gets so much to scatter and mirrors so much, its signature, and a number of the
-/// cell of its pattern.
+/// How a hit scatters light.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pigment {
+    /// The part that it gives back.
+    color: Rgb,
+    /// A number of the cell of its pattern.
+    cell: u32,
+    /// As in [`Shown`], if it gets light of 1.
+    detail: Detail,
+}
+
+/// What a hit adds to its sample.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shown {
+    pub(super) light: Rgb,
+    pub(super) signature: u32,
+    /// A number of the cell of its pattern.
+    pub(super) cell: u32,
+    /// What it shows of a picture that is finer than its ray; whole if no ray goes on from it.
+    pub(super) detail: Detail,
+}
+
+/// What a hit shows that gets so much light to scatter and mirrors so much.
 #[inline(always)]
-pub(super) fn shown(
-    diffuse: Rgb,
-    specular: Rgb,
-    path: Path,
-    pigment: Option<(Rgb, u32)>,
-) -> (Rgb, u32, u32) {
-    match pigment {
-        Some((color, cell)) => (specular + diffuse * color, path.cell(cell).signature(), cell),
-        None => (specular, path.signature(), 0),
+pub(super) fn shown(diffuse: Rgb, specular: Rgb, path: Path, pigment: Option<Pigment>) -> Shown {
+    let Some(Pigment { color, cell, detail }) = pigment else {
+        let (light, signature) = (specular, path.signature());
+        return Shown { light, signature, cell: 0, detail: Detail::default() };
+    };
+    Shown {
+        light: specular + diffuse * color,
+        signature: path.cell(cell).signature(),
+        cell,
+        detail: detail.lit(diffuse),
     }
 }

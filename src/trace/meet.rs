@@ -29,7 +29,7 @@ impl Tracer<'_> {
     pub(super) fn meet(&mut self, primitive: u32, same: u64, is_camera: bool) {
         let scene = self.scene;
         let (shape, material) = (scene.shape(primitive), scene.material(primitive));
-        let goes_on = material.reflection > 0.0 || material.is_transmissive();
+        let goes_on = material.sends_on();
         let together = (!goes_on || matches!(shape, Shape::Sphere(_)))
             && same.count_ones() >= FEWEST
             && (is_camera || self.start_in_points(shape, same))
@@ -97,6 +97,7 @@ impl Tracer<'_> {
         if task.level >= self.depth {
             return;
         }
+        let gone = (hit.t, self.width_of(&task, dir));
         let inside = surface.is_met_from_inside(dir);
         let counts = |weight: Rgb| (task.weight * weight).max_element() >= scene.cutoff();
         let mirror = Rgb::splat(material.reflection);
@@ -104,14 +105,14 @@ impl Tracer<'_> {
         if material.reflection > 0.0 && !only_transmits && counts(mirror) {
             self.counts.reflected += 1;
             self.rays.push(surface.leave(hit, mirrored(dir, surface, inside), inside));
-            self.tasks.push(task.child(mirror, Branch::Reflected));
+            self.tasks.push(task.child(gone, mirror, Branch::Reflected));
         }
         if material.is_transmissive()
             && counts(material.transmission)
             && let Some(onward) = transmitted(&mut self.counts, dir, surface, material.ior, inside)
         {
             self.rays.push(surface.leave(hit, onward, !inside));
-            self.tasks.push(task.child(material.transmission, Branch::Transmitted));
+            self.tasks.push(task.child(gone, material.transmission, Branch::Transmitted));
         }
     }
 }

@@ -9,6 +9,7 @@
 
 pub mod classic;
 mod counts;
+mod footprint;
 mod lit;
 mod meet;
 mod onward;
@@ -17,9 +18,10 @@ mod signature;
 mod sum;
 mod wavefront;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::{
+    aa::detail::Detail,
     accel::Work,
     color::Rgb,
     geometry::{
@@ -27,10 +29,12 @@ use crate::{
         lanes::{HitLanes, LANES, MetLanes, RayLanes, Vectors, lanes},
     },
     light::Light,
+    material::Material,
     scene::Scene,
 };
 pub use counts::RayCounts;
-use lit::Lit;
+pub use footprint::Cone;
+use lit::{Lit, Shown};
 use signature::{Branch, Path};
 use sum::Sum;
 use wavefront::Wavefront;
@@ -58,6 +62,8 @@ pub struct Sample {
     pub signature: u32,
     /// A number of the cells of patterns that it shows, itself or by what it reflects and transmits; 0 for none.
     pub cell: u32,
+    /// What it shows of pictures that are finer than what its ray stands for.
+    pub detail: Detail,
     /// How many rays it took, those towards lights included.
     pub rays: u32,
 }
@@ -69,18 +75,30 @@ struct Task {
     weight: Rgb,
     /// Camera rays have level 1.
     level: u32,
+    /// How long the way from the camera was, and the side of what it stands for at distance 1; zero for camera rays, whose
+    /// direction tells.
+    way: f32,
+    width: f32,
     /// Which of the samples asked for it belongs to.
     sample: u32,
     path: Path,
 }
 
 impl Task {
-    /// What a ray that comes from this one is for, if its answer counts `weight` in this one's.
+    /// What the camera ray of a sample is for.
     #[inline(always)]
-    fn child(&self, weight: Rgb, branch: Branch) -> Self {
+    fn camera(sample: u32) -> Self {
+        Self { weight: Rgb::ONE, level: 1, way: 0.0, width: 0.0, sample, path: Path::START }
+    }
+
+    /// What a ray is for that comes from where this one has gone so far, if its answer counts `weight` in this one's.
+    #[inline(always)]
+    fn child(&self, (gone, width): (f64, f32), weight: Rgb, branch: Branch) -> Self {
         Self {
             weight: self.weight * weight,
             level: self.level + 1,
+            way: self.way + gone as f32,
+            width,
             sample: self.sample,
             path: self.path.branch(branch),
         }
@@ -93,6 +111,7 @@ struct Gathered {
     color: Sum,
     signature: u32,
     cell: u32,
+    detail: Detail,
     rays: u32,
 }
 
@@ -104,12 +123,18 @@ impl Gathered {
         self.signature = self.signature.wrapping_add(signature);
     }
 
-    /// Adds a hit that shows its own colour: the light that it gives back, its signature, and the cell of its pattern.
+    /// Adds a hit that shows its own colour.
     #[inline(always)]
-    fn add_hit(&mut self, task: &Task, light: Rgb, signature: u32, cell: u32) {
-        self.add(task.weight * light, signature);
-        if cell != 0 && task.weight.max_element() >= WEIGHT_OF_CELLS {
-            self.cell = self.cell.wrapping_add(task.path.cell(cell).signature());
+    fn add_hit(&mut self, task: &Task, shown: &Shown) {
+        self.add(task.weight * shown.light, shown.signature);
+        if shown.cell != 0 && task.weight.max_element() >= WEIGHT_OF_CELLS {
+            self.cell = self.cell.wrapping_add(task.path.cell(shown.cell).signature());
+        }
+        if shown.detail != Detail::default() {
+            self.detail = self.detail.and(shown.detail.lit(task.weight).squared_error());
+            if task.level == 1 && shown.detail.is_whole() {
+                self.detail = self.detail.whole();
+            }
         }
     }
 }
@@ -129,6 +154,8 @@ struct Batch {
 pub struct Tracer<'a> {
     scene: &'a Scene,
     depth: u32,
+    /// What camera rays stand for, if samples are to tell of pictures that are finer.
+    cone: Option<Cone>,
     counts: RayCounts,
     /// The work list: rays, and what each is for.
     rays: Vec<Ray>,
@@ -144,13 +171,15 @@ pub struct Tracer<'a> {
 
 impl<'a> Tracer<'a> {
     /// A tracer that casts no ray of a level above `depth`, camera rays having level 1; `tells_highlights` is whether
-    /// signatures tell the inner part of a highlight from the rest of its surface.
-    pub fn new(scene: &'a Scene, depth: u32, tells_highlights: bool) -> Self {
+    /// signatures tell the inner part of a highlight from the rest of its surface, and `cone` what camera rays stand for, if
+    /// samples are to tell their [detail](Sample::detail).
+    pub fn new(scene: &'a Scene, depth: u32, cone: Option<Cone>, tells_highlights: bool) -> Self {
         let (met, hits) = (MetLanes::NONE, HitLanes::NONE);
         let (tasks, rays) = (Vec::new(), Vec::new());
         Self {
             scene,
             depth,
+            cone,
             counts: RayCounts::default(),
             rays: Vec::new(),
             tasks: Vec::new(),
@@ -188,8 +217,7 @@ impl<'a> Tracer<'a> {
                 batch.met.dir.set(k, dir);
             }
             batch.met.rest = Vectors::ZERO;
-            let task = |sample| Task { weight: Rgb::ONE, level: 1, sample, path: Path::START };
-            batch.tasks.extend((first as u32..count.min(first + BATCH) as u32).map(task));
+            batch.tasks.extend((first as u32..count.min(first + BATCH) as u32).map(Task::camera));
             self.run();
             while self.take_batch() {
                 self.run();
@@ -203,6 +231,7 @@ impl<'a> Tracer<'a> {
             color: g.color.value(),
             signature: g.signature,
             cell: g.cell,
+            detail: g.detail,
             rays: g.rays,
         };
         samples.extend(self.gathered.iter().map(sample));
@@ -311,8 +340,31 @@ impl<'a> Tracer<'a> {
         for k in lanes(self.lit.lanes()) {
             let task = &self.batch.tasks[k];
             let material = self.scene.material(self.batch.hits.primitive[k]);
-            let (light, signature, cell) = self.lit.show(k, material);
-            self.gathered[task.sample as usize].add_hit(task, light, signature, cell);
+            let shown = self.lit.show(k, material, self.uv_across(k, material));
+            self.gathered[task.sample as usize].add_hit(task, &shown);
+        }
+    }
+
+    /// How much the surface coordinates change across what the ray of a lane stands for, squared; `None` if
+    /// nobody asks for it.
+    #[inline(always)]
+    fn uv_across(&self, k: usize, material: &Material) -> Option<DVec2> {
+        if self.cone.is_none() || !material.texture.needs_uv() {
+            return None;
+        }
+        let (batch, shape) = (&*self.batch, self.scene.shape(self.batch.hits.primitive[k]));
+        let (task, dir) = (&batch.tasks[k], batch.met.dir.get(k));
+        let width = f64::from(self.width_of(task, dir)) * (f64::from(task.way) + batch.hits.t[k]);
+        let normal = self.lit.surfaces.facing.get(k);
+        Some(footprint::on_surface(width, dir, normal, shape.uv_gradients()))
+    }
+
+    /// The side of what a ray along `dir` stands for at distance 1 from the camera, its way unfolded.
+    #[inline(always)]
+    fn width_of(&self, task: &Task, dir: DVec3) -> f32 {
+        match &self.cone {
+            Some(cone) if task.level == 1 => cone.width_along(dir),
+            _ => task.width,
         }
     }
 
@@ -324,7 +376,8 @@ impl<'a> Tracer<'a> {
         for k in lanes(all) {
             let hit = (batch.hits.primitive[k], batch.hits.face[k]);
             let material = scene.material(hit.0);
-            self.waiting.push(&self.lit, k, &batch.tasks[k], hit, material);
+            let pigment = self.lit.pigment(k, material, self.uv_across(k, material));
+            self.waiting.push(&self.lit, k, &batch.tasks[k], hit, pigment);
         }
         for (number, light) in scene.lights().iter().enumerate() {
             let asked = self.lit.face(light, &batch.met.dir);

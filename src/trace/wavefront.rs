@@ -14,7 +14,7 @@ use glam::DVec3;
 
 use super::{
     Gathered, Task,
-    lit::{Lit, Wish, shown},
+    lit::{Lit, Pigment, Wish, shown},
     shadow::{self, Passed},
     signature::Path,
 };
@@ -22,7 +22,6 @@ use crate::{
     color::Rgb,
     geometry::lanes::{Departures, HitLanes, LANES, RayLanes, SurfaceLanes, Vectors, lanes},
     light::Light,
-    material::Material,
     scene::Scene,
 };
 
@@ -45,7 +44,7 @@ struct Waiting {
     path: u32,
     diffuse: Rgb,
     specular: Rgb,
-    pigment: Option<(Rgb, u32)>,
+    pigment: Option<Pigment>,
 }
 
 /// A ray from a hit to a light.
@@ -118,7 +117,7 @@ impl Wavefront {
         k: usize,
         task: &Task,
         (primitive, face): (u32, u8),
-        material: &Material,
+        pigment: Option<Pigment>,
     ) {
         let surfaces = &lit.surfaces;
         let (diffuse, specular) = lit.so_far(k);
@@ -133,7 +132,7 @@ impl Wavefront {
             path: lit.signature(k),
             diffuse,
             specular,
-            pigment: lit.pigment(k, material),
+            pigment,
         });
     }
 
@@ -165,8 +164,8 @@ impl Wavefront {
         for hit in self.hits.drain(..) {
             let Waiting { task, diffuse, specular, path, pigment, .. } = hit;
             let pigment = pigment.filter(|_| diffuse != Rgb::ZERO);
-            let (light, signature, cell) = shown(diffuse, specular, Path::of(path), pigment);
-            gathered[task.sample as usize].add_hit(&task, light, signature, cell);
+            let shown = shown(diffuse, specular, Path::of(path), pigment);
+            gathered[task.sample as usize].add_hit(&task, &shown);
         }
     }
 
@@ -286,7 +285,7 @@ mod tests {
             .collect();
         for tells_highlights in [false, true] {
             let trace = |at_once: usize, most: usize| {
-                let mut tracer = Tracer::new(&scene, scene.depth(), tells_highlights);
+                let mut tracer = Tracer::new(&scene, scene.depth(), None, tells_highlights);
                 tracer.waiting.most = most;
                 let (mut all, mut some): (Vec<Sample>, _) = (Vec::new(), Vec::new());
                 for dirs in dirs.chunks(at_once) {

@@ -2,6 +2,7 @@
 
 mod functions;
 mod goals;
+mod pictures;
 mod scenes;
 mod specks;
 mod thin;
@@ -24,7 +25,7 @@ impl Sampler for Function<'_> {
     fn sample(&mut self, places: &[DVec2], samples: &mut Vec<Sample>) {
         samples.extend(places.iter().map(|place| {
             let (brightness, signature) = (self.0)(*place);
-            Sample { color: Rgb::splat(brightness as f32), signature, cell: 0, rays: 1 }
+            Sample { color: Rgb::splat(brightness as f32), signature, rays: 1, ..Sample::default() }
         }));
     }
 }
