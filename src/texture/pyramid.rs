@@ -85,16 +85,22 @@ impl Mean {
 
 impl Pyramid {
     pub(super) fn of(image: &Image) -> Self {
-        let mut means = vec![Means::between_texels(image)];
-        while let Some(last) = means.last().filter(|last| last.size != [1, 1]) {
-            means.push(last.joined());
+        // Means of texels are made when they are asked for: there may be very many.
+        let texels = Texels(image);
+        let mut fine = Means::joined(image.size(), |place| texels.mean(place));
+        let mut grids =
+            vec![Grid::of(&fine, |place| sloped::<2>(place, |part| texels.levels(part)))];
+        if fine.size == [1, 1] {
+            return Self { grids };
         }
-        let wide = means.iter().enumerate().skip(1);
-        let grids = wide.map(|(k, wide)| match k {
-            1 => Grid::of(wide, |place| means[0].sloped::<2>(place)),
-            _ => Grid::of(wide, |place| means[k - 2].sloped::<4>(place)),
-        });
-        Self { grids: grids.collect() }
+        let mut wide = Means::joined(fine.size, |place| *fine.at(place));
+        grids.push(Grid::of(&wide, |place| sloped::<4>(place, |part| texels.levels(part))));
+        while wide.size != [1, 1] {
+            let wider = Means::joined(wide.size, |place| *wide.at(place));
+            grids.push(Grid::of(&wider, |place| sloped::<4>(place, |part| fine.at(part).levels)));
+            (fine, wide) = (wide, wider);
+        }
+        Self { grids }
     }
 
     /// The squared error, in levels, of the colour at (`x`, `y`), in texels from the upper left corner, as the mean of a
@@ -114,25 +120,39 @@ impl Pyramid {
     }
 }
 
-impl Means {
-    /// The squares between the middles of four texels each, to the right of and below each texel.
-    fn between_texels(image: &Image) -> Self {
-        let ([width, height], texels) = (image.size(), image.texels());
-        let cells = places([width, height]).map(|[x, y]| {
-            let (right, rows) =
-                ((x + 1).min(width - 1), [y * width, (y + 1).min(height - 1) * width]);
-            let corners = [rows[0] + x, rows[0] + right, rows[1] + x, rows[1] + right];
-            Mean::between(corners.map(|at| Rgb::from_array(texels[at].map(f32::from))))
-        });
-        Self { size: [width, height], cells: cells.collect() }
+/// The squares between the middles of four texels each, to the right of and below each texel.
+struct Texels<'a>(&'a Image);
+
+impl Texels<'_> {
+    #[inline(always)]
+    fn mean(&self, place: [usize; 2]) -> Mean {
+        Mean::between(self.corners(place))
     }
 
-    /// The squares twice as wide. The last row or column of an odd number is left out; a single one goes on beyond.
-    fn joined(&self) -> Self {
-        let size = self.size.map(|count| (count / 2).max(1));
+    /// [`Mean::levels`].
+    #[inline(always)]
+    fn levels(&self, place: [usize; 2]) -> Rgb {
+        let [a, b, c, d] = self.corners(place);
+        (a + b + c + d) * 0.25
+    }
+
+    #[inline(always)]
+    fn corners(&self, [x, y]: [usize; 2]) -> [Rgb; 4] {
+        let ([width, height], texels) = (self.0.size(), self.0.texels());
+        let (left, right) = (x.min(width - 1), (x + 1).min(width - 1));
+        let (above, below) = (y.min(height - 1) * width, (y + 1).min(height - 1) * width);
+        [above + left, above + right, below + left, below + right]
+            .map(|at| Rgb::from_array(texels[at].map(f32::from)))
+    }
+}
+
+impl Means {
+    /// The squares twice as wide as those of a grid of this size. The last row or column of an odd number is left out.
+    fn joined(size: [usize; 2], mean: impl Fn([usize; 2]) -> Mean) -> Self {
+        let size = size.map(|count| (count / 2).max(1));
         let cells = places(size).map(|[x, y]| {
             let (x, y) = (2 * x, 2 * y);
-            Mean::of([[x, y], [x + 1, y], [x, y + 1], [x + 1, y + 1]].map(|place| *self.at(place)))
+            Mean::of([[x, y], [x + 1, y], [x, y + 1], [x + 1, y + 1]].map(&mean))
         });
         Self { size, cells: cells.collect() }
     }
@@ -143,22 +163,23 @@ impl Means {
         let [width, height] = self.size;
         &self.cells[y.min(height - 1) * width + x.min(width - 1)]
     }
+}
 
-    /// What the plane that is nearest to the levels of N × N squares makes of the variance of the one that they are together,
-    /// in this column and row of such: a little more than of that of their means.
-    fn sloped<const N: usize>(&self, [x, y]: [usize; 2]) -> Rgb {
-        let from_middle = |k: usize| k as f32 - (N as f32 - 1.0) / 2.0;
-        let (mut across, mut down, mut squares) = (Rgb::ZERO, Rgb::ZERO, 0.0);
-        for j in 0..N {
-            for i in 0..N {
-                let levels = self.at([N * x + i, N * y + j]).levels;
-                across += levels * from_middle(i);
-                down += levels * from_middle(j);
-                squares += from_middle(i) * from_middle(i);
-            }
+/// What the plane that is nearest to the `levels` of N × N squares makes of the variance of the one that they are together, in
+/// this column and row of such: a little more than of that of their means.
+#[inline(always)]
+fn sloped<const N: usize>([x, y]: [usize; 2], levels: impl Fn([usize; 2]) -> Rgb) -> Rgb {
+    let from_middle = |k: usize| k as f32 - (N as f32 - 1.0) / 2.0;
+    let (mut across, mut down, mut squares) = (Rgb::ZERO, Rgb::ZERO, 0.0);
+    for j in 0..N {
+        for i in 0..N {
+            let levels = levels([N * x + i, N * y + j]);
+            across += levels * from_middle(i);
+            down += levels * from_middle(j);
+            squares += from_middle(i) * from_middle(i);
         }
-        (across * across + down * down) / (squares * (N * N - 1) as f32)
     }
+    (across * across + down * down) / (squares * (N * N - 1) as f32)
 }
 
 /// The columns and rows of a grid, row by row.
