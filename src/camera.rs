@@ -6,7 +6,6 @@ use thiserror::Error;
 use crate::{
     geometry::{Ray, Similarity},
     math::scale,
-    trace::Cone,
 };
 
 /// A pinhole camera.
@@ -153,6 +152,25 @@ impl View {
     /// Where all rays start.
     pub fn eye(&self) -> DVec3 {
         self.eye
+    }
+}
+
+/// What camera rays stand for: squares on the film around their places.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cone {
+    /// The unit direction of the view's axis.
+    axis: DVec3,
+    /// The side of the squares at depth 1.
+    width: f64,
+}
+
+impl Cone {
+    /// The side of a square as large as what the ray along the unit vector `dir` stands for, at distance 1 and right angles
+    /// to the ray: the film is farther away there, and seen aslant.
+    #[inline(always)]
+    pub(crate) fn width_along(&self, dir: DVec3) -> f32 {
+        let cosine = dir.dot(self.axis);
+        (self.width * cosine * cosine.abs().sqrt()) as f32
     }
 }
 

@@ -5,25 +5,6 @@
 
 use glam::{DVec2, DVec3};
 
-/// What camera rays stand for: squares on the film around their places.
-#[derive(Clone, Copy, Debug)]
-pub struct Cone {
-    /// The unit direction of the view's axis.
-    pub axis: DVec3,
-    /// The side of the squares at depth 1.
-    pub width: f64,
-}
-
-impl Cone {
-    /// The side of a square as large as what the ray along the unit vector `dir` stands for, at distance 1 and right angles
-    /// to the ray: the film is farther away there, and seen aslant.
-    #[inline(always)]
-    pub(super) fn width_along(&self, dir: DVec3) -> f32 {
-        let cosine = dir.dot(self.axis);
-        (self.width * cosine * cosine.abs().sqrt()) as f32
-    }
-}
-
 /// How much surface coordinates with these gradients change across a square of a side of `width` at right angles to the unit
 /// vector `dir`, seen on a surface with this unit normal: the mean square of both directions, in which it is the same
 /// whichever these are.

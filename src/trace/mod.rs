@@ -23,6 +23,7 @@ use glam::{DVec2, DVec3};
 use crate::{
     aa::detail::Detail,
     accel::Work,
+    camera::Cone,
     color::Rgb,
     geometry::{
         Ray,
@@ -33,7 +34,6 @@ use crate::{
     scene::Scene,
 };
 pub use counts::RayCounts;
-pub use footprint::Cone;
 use lit::{Lit, Shown};
 use signature::{Branch, Path};
 use sum::Sum;
@@ -173,7 +173,12 @@ impl<'a> Tracer<'a> {
     /// A tracer that casts no ray of a level above `depth`, camera rays having level 1; `tells_highlights` is whether
     /// signatures tell the inner part of a highlight from the rest of its surface, and `cone` what camera rays stand for, if
     /// samples are to tell their [detail](Sample::detail).
-    pub fn new(scene: &'a Scene, depth: u32, cone: Option<Cone>, tells_highlights: bool) -> Self {
+    pub(crate) fn new(
+        scene: &'a Scene,
+        depth: u32,
+        cone: Option<Cone>,
+        tells_highlights: bool,
+    ) -> Self {
         let (met, hits) = (MetLanes::NONE, HitLanes::NONE);
         let (tasks, rays) = (Vec::new(), Vec::new());
         Self {
