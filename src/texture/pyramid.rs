@@ -1,7 +1,10 @@
 //! What of a picture is finer than the rays that meet it.
 
+use std::ops::Range;
+
+use glam::Vec3A;
+
 use super::image::{Beyond, Image};
-use crate::color::Rgb;
 
 /// For squares of 2 × 2, 4 × 4, ... texels of a picture, how far colours in them are from the mean of their light.
 ///
@@ -9,56 +12,53 @@ use crate::color::Rgb;
 /// not count: it is the same on both sides of a ray through the middle.
 #[derive(Clone, Debug)]
 pub(super) struct Pyramid {
-    grids: Vec<Grid>,
+    grids: Vec<Grid<Off>>,
 }
 
 /// Places are in so many parts of a texel or square: a power of two.
 const PARTS: i64 = 256;
 
-/// The squares of one size.
+/// Something about each square of one size, row by row from the top.
 #[derive(Clone, Debug)]
-struct Grid {
+struct Grid<T> {
     size: [usize; 2],
-    /// Root mean squares, row by row from the top.
-    off: Vec<Off>,
+    cells: Vec<T>,
 }
 
-/// A number of levels of 255, as sixteen times its square root, so that small ones are told apart as well.
+/// The root mean square of what is in a square: a number of levels of 255, as sixteen times its square root, so that small
+/// ones are told apart as well.
 #[derive(Clone, Copy, Debug)]
 struct Off(u8);
 
 impl Off {
+    #[inline(always)]
     fn of_square(square: f32) -> Self {
         Self((16.0 * square.max(0.0).sqrt().sqrt() + 0.5) as u8)
     }
 
+    #[inline(always)]
     fn square(self) -> f32 {
         let root = f32::from(self.0) / 16.0;
         (root * root) * (root * root)
     }
 }
 
-/// Means over each square of one size.
-struct Means {
-    size: [usize; 2],
-    cells: Vec<Mean>,
-}
-
 /// Means over a square, channel by channel.
 #[derive(Clone, Copy)]
 struct Mean {
-    levels: Rgb,
+    levels: Vec3A,
     /// Of the squared levels, between the texels as well.
-    squares: Rgb,
+    squares: Vec3A,
     /// Of the squared levels of the texels alone: of light, of which levels are taken to be the root, and which is bilinear
     /// between them.
-    light: Rgb,
+    light: Vec3A,
 }
 
 impl Mean {
     /// That of the square between the middles of four texels, where colours are bilinear. From a to b the mean square is
     /// that of the two, less a sixth of their squared difference.
-    fn between([a, b, c, d]: [Rgb; 4]) -> Self {
+    #[inline(always)]
+    fn between([a, b, c, d]: [Vec3A; 4]) -> Self {
         let [above, below, left, right] = [a - b, c - d, a - c, b - d];
         let (level, upright) = (above * above + below * below, left * left + right * right);
         let twisted = (above - below) * (above - below);
@@ -68,7 +68,8 @@ impl Mean {
     }
 
     /// That of four squares.
-    fn of([a, b, c, d]: [Self; 4]) -> Self {
+    #[inline(always)]
+    fn of([a, b, c, d]: [&Self; 4]) -> Self {
         Self {
             levels: (a.levels + b.levels + c.levels + d.levels) * 0.25,
             squares: (a.squares + b.squares + c.squares + d.squares) * 0.25,
@@ -77,28 +78,45 @@ impl Mean {
     }
 
     /// By how much the levels in the square are off from that of its mean light, if a plane makes so much of their variance.
-    fn off(&self, sloped: Rgb) -> Off {
-        let apart = self.squares + self.light - 2.0 * self.levels * self.light.map(f32::sqrt);
-        Off::of_square((apart - sloped).element_sum() / 3.0)
+    #[inline(always)]
+    fn off(&self, sloped: Vec3A) -> Off {
+        let apart = self.squares + self.light - 2.0 * self.levels * self.light.sqrt();
+        let [red, green, blue] = (apart - sloped).to_array();
+        Off::of_square((red + green + blue) / 3.0)
     }
 }
 
 impl Pyramid {
     pub(super) fn of(image: &Image) -> Self {
-        // Means of texels are made when they are asked for: there may be very many.
-        let texels = Texels(image);
-        let mut fine = Means::joined(image.size(), |place| texels.mean(place));
-        let mut grids =
-            vec![Grid::of(&fine, |place| sloped::<2>(place, |part| texels.levels(part)))];
-        if fine.size == [1, 1] {
-            return Self { grids };
+        let size = halved(image.size());
+        let mut fine = Grid { size, cells: Vec::with_capacity(size[0] * size[1]) };
+        let mut wide = Grid { size: halved(size), cells: Vec::new() };
+        let mut grids = [size, wide.size].map(|size| Grid { size, cells: Vec::new() });
+        // Four rows of squares between texels at a time, of which there may be very many: two rows of the next, one of those
+        // beyond.
+        for row in (0..size[1]).step_by(2) {
+            let squares = Grid::between_texels(image, 2 * row..2 * row + 4);
+            let two = squares.joined([size[0], (size[1] - row).min(2)]);
+            grids[0].cells.extend(two.off(|place| sloped::<2>(place, |at| squares.at(at).levels)));
+            fine.cells.extend(two.cells.iter().map(|mean| mean.levels));
+            if row / 2 < wide.size[1] {
+                let one = two.joined([wide.size[0], 1]);
+                let off = one.off(|place| sloped::<4>(place, |at| squares.at(at).levels));
+                grids[1].cells.extend(off);
+                wide.cells.extend(one.cells);
+            }
         }
-        let mut wide = Means::joined(fine.size, |place| *fine.at(place));
-        grids.push(Grid::of(&wide, |place| sloped::<4>(place, |part| texels.levels(part))));
+        let mut grids = Vec::from(grids);
+        if size == [1, 1] {
+            grids.pop();
+        }
         while wide.size != [1, 1] {
-            let wider = Means::joined(wide.size, |place| *wide.at(place));
-            grids.push(Grid::of(&wider, |place| sloped::<4>(place, |part| fine.at(part).levels)));
-            (fine, wide) = (wide, wider);
+            let wider = wide.joined(halved(wide.size));
+            let off = wider.off(|place| sloped::<4>(place, |at| *fine.at(at)));
+            grids.push(Grid { size: wider.size, cells: off.collect() });
+            let levels = wide.cells.iter().map(|mean| mean.levels);
+            fine = Grid { size: wide.size, cells: levels.collect() };
+            wide = wider;
         }
         Self { grids }
     }
@@ -113,64 +131,29 @@ impl Pyramid {
         let place = place.map(|x| ((x - 0.5) * PARTS as f64) as i64);
         let of = |doublings: usize| {
             let grid = doublings.checked_sub(1).and_then(|k| self.grids.get(k));
-            grid.map_or(0.0, |grid| grid.at(place.map(|x| x >> doublings), beyond))
+            grid.map_or(0.0, |grid| grid.square_at(place.map(|x| x >> doublings), beyond))
         };
         let part = (side / width(doublings) - 1.0) as f32;
         of(doublings) * (1.0 - part) + of(doublings + 1) * part
     }
 }
 
-/// The squares between the middles of four texels each, to the right of and below each texel.
-struct Texels<'a>(&'a Image);
-
-impl Texels<'_> {
-    #[inline(always)]
-    fn mean(&self, place: [usize; 2]) -> Mean {
-        Mean::between(self.corners(place))
-    }
-
-    /// [`Mean::levels`].
-    #[inline(always)]
-    fn levels(&self, place: [usize; 2]) -> Rgb {
-        let [a, b, c, d] = self.corners(place);
-        (a + b + c + d) * 0.25
-    }
-
-    #[inline(always)]
-    fn corners(&self, [x, y]: [usize; 2]) -> [Rgb; 4] {
-        let ([width, height], texels) = (self.0.size(), self.0.texels());
-        let (left, right) = (x.min(width - 1), (x + 1).min(width - 1));
-        let (above, below) = (y.min(height - 1) * width, (y + 1).min(height - 1) * width);
-        [above + left, above + right, below + left, below + right]
-            .map(|at| Rgb::from_array(texels[at].map(f32::from)))
-    }
+/// The columns and rows of squares twice as wide. The last row or column of an odd number is left out.
+fn halved(size: [usize; 2]) -> [usize; 2] {
+    size.map(|count| (count / 2).max(1))
 }
 
-impl Means {
-    /// The squares twice as wide as those of a grid of this size. The last row or column of an odd number is left out.
-    fn joined(size: [usize; 2], mean: impl Fn([usize; 2]) -> Mean) -> Self {
-        let size = size.map(|count| (count / 2).max(1));
-        let cells = places(size).map(|[x, y]| {
-            let (x, y) = (2 * x, 2 * y);
-            Mean::of([[x, y], [x + 1, y], [x, y + 1], [x + 1, y + 1]].map(&mean))
-        });
-        Self { size, cells: cells.collect() }
-    }
-
-    /// The square of a column and row; the last one goes on beyond.
-    #[inline(always)]
-    fn at(&self, [x, y]: [usize; 2]) -> &Mean {
-        let [width, height] = self.size;
-        &self.cells[y.min(height - 1) * width + x.min(width - 1)]
-    }
+/// The columns and rows of a grid, row by row.
+fn places([width, height]: [usize; 2]) -> impl Iterator<Item = [usize; 2]> {
+    (0..height).flat_map(move |row| (0..width).map(move |column| [column, row]))
 }
 
 /// What the plane that is nearest to the `levels` of N × N squares makes of the variance of the one that they are together, in
 /// this column and row of such: a little more than of that of their means.
 #[inline(always)]
-fn sloped<const N: usize>([x, y]: [usize; 2], levels: impl Fn([usize; 2]) -> Rgb) -> Rgb {
+fn sloped<const N: usize>([x, y]: [usize; 2], levels: impl Fn([usize; 2]) -> Vec3A) -> Vec3A {
     let from_middle = |k: usize| k as f32 - (N as f32 - 1.0) / 2.0;
-    let (mut across, mut down, mut squares) = (Rgb::ZERO, Rgb::ZERO, 0.0);
+    let (mut across, mut down, mut squares) = (Vec3A::ZERO, Vec3A::ZERO, 0.0);
     for j in 0..N {
         for i in 0..N {
             let levels = levels([N * x + i, N * y + j]);
@@ -182,19 +165,54 @@ fn sloped<const N: usize>([x, y]: [usize; 2], levels: impl Fn([usize; 2]) -> Rgb
     (across * across + down * down) / (squares * (N * N - 1) as f32)
 }
 
-/// The columns and rows of a grid, row by row.
-fn places([width, height]: [usize; 2]) -> impl Iterator<Item = [usize; 2]> {
-    (0..height).flat_map(move |row| (0..width).map(move |column| [column, row]))
+impl<T> Grid<T> {
+    /// What there is in a column and row; the last one goes on beyond.
+    #[inline(always)]
+    fn at(&self, [x, y]: [usize; 2]) -> &T {
+        let [width, height] = self.size;
+        &self.cells[y.min(height - 1) * width + x.min(width - 1)]
+    }
 }
 
-impl Grid {
-    fn of(means: &Means, sloped: impl Fn([usize; 2]) -> Rgb) -> Self {
-        let off = means.cells.iter().zip(places(means.size));
-        Self { size: means.size, off: off.map(|(mean, place)| mean.off(sloped(place))).collect() }
+impl Grid<Mean> {
+    /// Some rows of the squares between the middles of four texels each, to the right of and below each texel.
+    fn between_texels(image: &Image, rows: Range<usize>) -> Self {
+        let [width, height] = image.size();
+        let row = |y: usize| {
+            let row = &image.texels()[y.min(height - 1) * width..][..width];
+            let levels = |texel: &[u8; 3]| Vec3A::from_array(texel.map(f32::from));
+            row.iter().chain(row.last()).map(levels).collect::<Vec<Vec3A>>()
+        };
+        let size = [width, rows.len()];
+        let mut cells = Vec::with_capacity(width * rows.len());
+        let mut above = row(rows.start);
+        for y in rows {
+            let below = row(y + 1);
+            let pairs = above.windows(2).zip(below.windows(2));
+            cells.extend(pairs.map(|(a, c)| Mean::between([a[0], a[1], c[0], c[1]])));
+            above = below;
+        }
+        Self { size, cells }
     }
 
+    /// Squares twice as wide, of so many columns and rows.
+    fn joined(&self, size: [usize; 2]) -> Self {
+        let mean = |[x, y]: [usize; 2]| {
+            let (x, y) = (2 * x, 2 * y);
+            Mean::of([[x, y], [x + 1, y], [x, y + 1], [x + 1, y + 1]].map(|part| self.at(part)))
+        };
+        Self { size, cells: places(size).map(mean).collect() }
+    }
+
+    /// [`Mean::off`] of each, by what is sloped in its column and row.
+    fn off(&self, sloped: impl Fn([usize; 2]) -> Vec3A) -> impl Iterator<Item = Off> {
+        self.cells.iter().zip(places(self.size)).map(move |(mean, place)| mean.off(sloped(place)))
+    }
+}
+
+impl Grid<Off> {
     /// The squared error at a place in [`PARTS`] of squares from the upper left corner, bilinear between their middles.
-    fn at(&self, [x, y]: [i64; 2], beyond: Beyond) -> f32 {
+    fn square_at(&self, [x, y]: [i64; 2], beyond: Beyond) -> f32 {
         let between = |x: i64, count: usize| {
             let x = x - PARTS / 2;
             let part = (x & (PARTS - 1)) as f32 / PARTS as f32;
@@ -206,7 +224,7 @@ impl Grid {
             (entry(first), entry(first + 1), part)
         };
         let ((x0, x1, p), (y0, y1, q)) = (between(x, self.size[0]), between(y, self.size[1]));
-        let square = |column: usize, row: usize| self.off[row * self.size[0] + column].square();
+        let square = |column: usize, row: usize| self.at([column, row]).square();
         let upper = square(x0, y0) * (1.0 - p) + square(x1, y0) * p;
         let lower = square(x0, y1) * (1.0 - p) + square(x1, y1) * p;
         upper * (1.0 - q) + lower * q
@@ -220,6 +238,7 @@ mod tests {
     use super::*;
     use crate::{
         aa::levels::{levels, squared_distance},
+        color::Rgb,
         math::random::SplitMix64,
     };
 
