@@ -6,6 +6,7 @@
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 
 use super::levels::squared_distance;
 
@@ -134,7 +135,8 @@ pub struct Spread {
     deviation: Vec3,
     square: f32,
     count: u32,
-    signatures: Vec<u32>,
+    /// One of each; mostly few.
+    signatures: SmallVec<[u32; 8]>,
 }
 
 impl Spread {
@@ -173,8 +175,8 @@ impl Spread {
 
     /// The signature, if all samples share it.
     pub fn only_signature(&self) -> Option<u32> {
-        match *self.signatures {
-            [signature] => Some(signature),
+        match self.signatures.as_slice() {
+            [signature] => Some(*signature),
             _ => None,
         }
     }
