@@ -10,13 +10,14 @@ use super::{
     demand::Demand,
     hidden::hidden_error,
     hints::{Hint, Least},
-    look::{Noise, ONE_COLOR, Window, corrected, skips_cells},
+    look::{ONE_COLOR, corrected, skips_cells},
     outlook::{Outlook, Worth},
     plane::{Area, Plane, Tiled},
-    round::{Chosen, Pixel, Threshold, Unseen, is_disputed, is_picked},
+    round::{Chosen, Pixel, Threshold, is_disputed, is_picked},
+    window::{Survey, Window},
 };
 use crate::{
-    aa::{Sample, detail::Detail, estimate::Look, refined::Stage},
+    aa::{Sample, estimate::Look, refined::Stage},
     color::Rgb,
 };
 
@@ -70,34 +71,38 @@ impl Known {
         let known = Mutex::new(&mut *self);
         let never = || false;
         crew.run(&area, false, never, |sampler, _, tile| {
-            let window = Window::of_centers(tile, APRON, centers);
-            let suspects = window.suspects();
-            let mut pixels = pixels_of(tile, &window, &suspects, centers);
-            for (pixel, (x, y)) in pixels.iter_mut().zip(tile.pixels()) {
-                let (center, mut expected) = (centers.at(x, y), pixel.worth.expected);
-                if has_hints {
-                    let Hint { least, glint } = sampler.hint(x as u32, y as u32);
-                    pixel.is_thin = least.is_some();
-                    pixel.least = pixel.least.max(least);
-                    pixel.unseen = Unseen::of(glint, center.color);
-                    pixel.error = pixel.error.max(pixel.unseen.error());
-                    expected += pixel.unseen.expected_after(0);
-                }
-                pixel.worth = Worth::of(pixel, expected, stages, center);
-            }
-            let alike = suspects.iter().filter(|(_, look)| look.contrast < ONE_COLOR);
+            let survey = Window::of_centers(tile, APRON, centers).survey();
+            let own = centers.part(tile);
+            let hint = |(x, y): (i64, i64)| sampler.hint(x as u32, y as u32);
+            let has_hints = has_hints && tile.pixels().any(|at| hint(at) != Hint::default());
+            let may_be_calm = survey.suspects.is_empty() && !stages.is_empty();
+            let is_calm = |outlook: &Outlook| may_be_calm && !outlook.may_exceed(least);
+            let smooth = (may_be_calm && !has_hints).then(|| smooth_outlook(&survey, &own));
+            let (outlook, pixels) = smooth.filter(is_calm).map_or_else(
+                || {
+                    let mut pixels = pixels_of(tile, &survey, centers);
+                    for ((pixel, center), at) in pixels.iter_mut().zip(&own).zip(tile.pixels()) {
+                        let mut expected = pixel.worth.expected;
+                        if has_hints {
+                            expected += pixel.heed(hint(at), center.color);
+                        }
+                        pixel.worth = Worth::of(pixel, expected, stages, center);
+                    }
+                    (Outlook::of(pixels.iter().map(|pixel| pixel.worth)), pixels)
+                },
+                |outlook| (outlook, Vec::new()),
+            );
+            let alike = survey.suspects.iter().filter(|(_, look)| look.contrast < ONE_COLOR);
             lock(&of_one_color).extend(alike.map(|(place, _)| tile.pixel_at(*place)));
-            let colors = colors_of(tile, &suspects, centers);
-            let is_traced = |(x, y)| u32::from(centers.at(x, y).rays > 0);
-            let samples = tile.pixels().map(is_traced).collect();
-            let outlook = Outlook::of(&pixels);
+            let colors = colors_of(tile, &survey.suspects, centers);
+            let mut samples = Vec::with_capacity(tile.len());
+            samples.extend(own.iter().map(|center| u32::from(center.rays > 0)));
             let mut known = lock(&known);
             *known.outlook_mut(tile.x0, tile.y0) = outlook;
             known.colors.put(tile, colors);
             known.samples.put(tile, samples);
-            if !suspects.is_empty() || outlook.may_exceed(least) || stages.is_empty() {
-                *known.pixels.of_mut(tile) = pixels;
-            }
+            // Also where some were known of a tile whose centres were not all traced.
+            *known.pixels.of_mut(tile) = if is_calm(&outlook) { Vec::new() } else { pixels };
         });
         self.expect_hidden(of_one_color.into_inner().unwrap_or_else(PoisonError::into_inner));
     }
@@ -172,7 +177,8 @@ impl Known {
             }
             pixels[tile.place_of(x, y)] = pixel;
         }
-        *self.outlook_mut(tile.x0, tile.y0) = Outlook::of(self.pixels.of(tile));
+        let worths = self.pixels.of(tile).iter().map(|pixel| pixel.worth);
+        *self.outlook_mut(tile.x0, tile.y0) = Outlook::of(worths);
     }
 
     /// What the next stages of all pixels are worth, and take; `is_short` as for [`Demand::of`].
@@ -195,26 +201,29 @@ impl Known {
     }
 }
 
+/// The outlook of a tile if all is smooth in it and its pixels may be refined.
+fn smooth_outlook(survey: &Survey, centers: &[Sample]) -> Outlook {
+    let pixels = survey.smooth.iter().zip(&survey.noise).zip(centers);
+    Outlook::of(pixels.map(|((smooth, noise), center)| {
+        Worth::of_smooth(smooth.max(noise.error()), *smooth, center)
+    }))
+}
+
 /// The pixels of a tile, row by row, as their centres and the looks of those that are suspect tell.
-fn pixels_of(
-    tile: &Area,
-    window: &Window,
-    suspects: &[(usize, Look)],
-    centers: &Plane<Sample>,
-) -> Vec<Pixel> {
-    let smooth = |((own, noise), detail): ((f32, Noise), Detail)| Pixel {
-        error: own.max(noise.error()),
+fn pixels_of(tile: &Area, survey: &Survey, centers: &Plane<Sample>) -> Vec<Pixel> {
+    let own = centers.part(tile);
+    let smooth = survey.smooth.iter().zip(&survey.noise).zip(&own);
+    let mut pixels = Vec::with_capacity(tile.len());
+    pixels.extend(smooth.map(|((smooth, noise), center)| Pixel {
+        error: smooth.max(noise.error()),
         // What the neighbours of each say is right on average.
-        worth: Worth { expected: own, ..Worth::default() },
+        worth: Worth { expected: *smooth, ..Worth::default() },
         contrast: CONTRAST_OF_NOISE * noise.error(),
         busy: noise.busy(),
-        detail,
+        detail: center.detail,
         ..Pixel::default()
-    };
-    let errors = window.smooth_errors(true).into_iter().zip(window.noise_around());
-    let errors = errors.zip(tile.pixels().map(|(x, y)| centers.at(x, y).detail));
-    let mut pixels: Vec<Pixel> = errors.map(smooth).collect();
-    for (place, look) in suspects {
+    }));
+    for (place, look) in &survey.suspects {
         let (x, y) = tile.pixel_at(*place);
         let skips = skips_cells(centers, x, y, look.contrast);
         let detail = centers.at(x, y).detail;

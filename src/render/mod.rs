@@ -20,6 +20,7 @@ mod round;
 mod thin;
 mod watch;
 mod whole;
+mod window;
 mod worker;
 
 use std::{

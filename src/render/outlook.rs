@@ -49,6 +49,12 @@ impl Worth {
         Self { error: pixel.error, if_short: pixel.error, rays, expected }
     }
 
+    /// The worth of a pixel that was off by `error` where all is smooth, and may get more rays.
+    #[inline]
+    pub(super) fn of_smooth(error: f32, expected: f32, center: &Sample) -> Self {
+        Self { error, if_short: error, rays: OWN_CORNERS * center.rays as f32, expected }
+    }
+
     /// Whether the pixel is above the threshold and may get more rays.
     #[inline]
     pub(super) fn exceeds(&self, threshold: Threshold) -> bool {
@@ -74,9 +80,9 @@ pub(super) struct Outlook {
 }
 
 impl Outlook {
-    /// The outlook of a tile's pixels, row by row.
-    pub(super) fn of(pixels: &[Pixel]) -> Self {
-        pixels.iter().fold(Self::default(), |outlook, Pixel { worth, .. }| {
+    /// The outlook of pixels of these worths.
+    pub(super) fn of(worths: impl Iterator<Item = Worth>) -> Self {
+        worths.fold(Self::default(), |outlook, worth| {
             let per_ray = |error: f32| if error > 0.0 { error / worth.rays } else { 0.0 };
             Self {
                 error: outlook.error.max(worth.error),
@@ -122,7 +128,7 @@ mod tests {
             let least = Least { samples, if_alike: 8 * samples, part: 1.0 / 32.0 };
             let pixel = Pixel { error, least, ..Pixel::default() };
             let worth = Worth::of(&pixel, error, &stages, &center);
-            (worth, Outlook::of(&[Pixel { worth, ..pixel }]))
+            (worth, Outlook::of([worth].into_iter()))
         };
         let late = |limit: f32| Threshold::PerRayOfSome(limit, 1.0, 7);
         let per_ray = 3.0 * OWN_CORNERS;

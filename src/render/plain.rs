@@ -9,8 +9,8 @@ use super::{
     Outcome, Picture,
     cell::{Cell, Judge},
     crew::{Crew, Sampler, in_turn, lock, sum_of_tiles, trace_centers},
-    look::Window,
     plane::{Area, Plane},
+    window::Window,
 };
 use crate::aa::{Sample, detail::Detail, grid_places, pattern::Pattern, sobol::Sequence};
 

@@ -275,6 +275,17 @@ impl<T> Tiled<T> {
     }
 }
 
+impl<T: Copy> Plane<T> {
+    /// The values of `part`, which is within the area, row by row.
+    pub(super) fn part(&self, part: &Area) -> Vec<T> {
+        let mut values = Vec::with_capacity(part.len());
+        for y in part.y0..part.y1 {
+            values.extend_from_slice(&self.nearest_row(y)[self.columns(part)]);
+        }
+        values
+    }
+}
+
 impl Plane<Sample> {
     /// Whether all samples of a tile have their rays.
     pub(super) fn is_traced(&self, tile: &Area) -> bool {

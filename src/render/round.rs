@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     crew::{Sampler, Scratch},
-    hints::{Glint, Least},
+    hints::{Glint, Hint, Least},
     outlook::Worth,
     plane::{Plane, Tiled},
 };
@@ -83,6 +83,18 @@ pub(super) struct Pixel {
 }
 
 impl Pixel {
+    /// Takes in what the scene tells of it, and the colour of its centre; returns the squared error that this adds to what is
+    /// expected.
+    pub(super) fn heed(&mut self, Hint { least, glint }: Hint, center: Rgb) -> f32 {
+        self.is_thin = least.is_some();
+        self.least = self.least.max(least);
+        if glint.light > 0.0 {
+            self.unseen = Unseen::of(glint, center);
+            self.error = self.error.max(self.unseen.error);
+        }
+        self.unseen.expected_after(0)
+    }
+
     /// The samples of the sequence so far.
     pub(super) fn points(&self) -> u32 {
         self.refined.as_ref().map_or(0, |refined| refined.points())
@@ -107,14 +119,9 @@ pub(super) struct Unseen {
 
 impl Unseen {
     /// The highlights in a pixel whose centre met none of them, and has this colour.
-    pub(super) fn of(glint: Glint, center: Rgb) -> Self {
+    fn of(glint: Glint, center: Rgb) -> Self {
         let with_it = (center + Rgb::splat(glint.light)).min(Rgb::ONE);
         Self { error: squared_distance(levels(with_it), levels(center)), samples: glint.samples }
-    }
-
-    /// The squared error with the centre alone.
-    pub(super) fn error(self) -> f32 {
-        self.error
     }
 
     /// The squared error that may be left after so many samples.
@@ -124,7 +131,7 @@ impl Unseen {
     }
 
     /// The squared error that is expected of what so many samples did not meet.
-    pub(super) fn expected_after(self, points: u32) -> f32 {
+    fn expected_after(self, points: u32) -> f32 {
         self.error_after(points.saturating_mul(SOONER))
     }
 }

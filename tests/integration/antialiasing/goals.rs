@@ -1,14 +1,14 @@
 //! Rendering to an error and to a time.
 
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use glam::DVec2;
 use whitted::Rgb;
 use whitted::film::Tile;
 use whitted::render::{Block, Goal, RenderOptions, Sink, Unfinished, render, render_blocks};
-use whitted::scene::load_builtin;
+use whitted::scene::{LoadOptions, load, load_builtin};
 
 use super::{Seen, picture_of};
 
@@ -106,6 +106,59 @@ fn any_way_to_the_same_threshold_gives_the_same_picture() {
         assert!(by_steps.samples == at_once.samples, "{steps:?}");
         assert!(by_steps.colors == at_once.colors, "{steps:?}");
     }
+}
+
+/// Wants a picture to be kept after so many questions whether it does, once.
+struct Paused {
+    after: usize,
+    questions: AtomicUsize,
+    is_kept: AtomicBool,
+    end: Mutex<Option<Block>>,
+}
+
+impl Sink for Paused {
+    fn put(&self, block: Block) {
+        *self.end.lock().expect("no panic") = Some(block);
+    }
+
+    fn wants_unfinished(&self) -> bool {
+        let questions = self.questions.fetch_add(1, Ordering::Relaxed);
+        questions >= self.after && !self.is_kept.load(Ordering::Relaxed)
+    }
+
+    fn keep(&self, _: &Unfinished) {
+        self.is_kept.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Oracle: the picture that is not interrupted. Before a plain sky, what is not traced yet looks like an edge.
+#[test]
+fn a_pause_before_all_centres_are_traced_changes_nothing() {
+    let options = LoadOptions { objects: Some(1), ..LoadOptions::default() };
+    let scene = load("spheres", &options).expect("a scene").scene;
+    let render_to = |goal: Goal, after: usize| {
+        let (questions, is_kept) = (AtomicUsize::new(0), AtomicBool::new(false));
+        let sink = Paused { after, questions, is_kept, end: Mutex::new(None) };
+        let options = RenderOptions {
+            size: Some([320, 320]),
+            aa: "adaptive:0,64".parse().expect("a mode"),
+            goal,
+            ..RenderOptions::default()
+        };
+        render_blocks(&scene, &options, &sink).expect("rendered");
+        (sink.is_kept.into_inner(), sink.end.into_inner().expect("no panic").expect("a picture"))
+    };
+    let (_, expected) = render_to(Goal::Error(0.2), usize::MAX);
+    for after in [1, 5, 10, 20, 40] {
+        let (is_kept, paused) = render_to(Goal::Error(0.2), after);
+        assert!(is_kept && paused.samples == expected.samples, "{after}");
+        assert!(paused.colors == expected.colors && paused.account == expected.account, "{after}");
+    }
+    let plenty = || Goal::Until(Instant::now() + Duration::from_secs(3600));
+    let (_, expected) = render_to(plenty(), usize::MAX);
+    let (is_kept, paused) = render_to(plenty(), 20);
+    assert!(is_kept && expected.outcome.is_used_up && paused.outcome.is_used_up);
+    assert!(paused.samples == expected.samples);
 }
 
 #[test]
