@@ -1,9 +1,8 @@
 //! `whitted compare`: how far two pictures are apart.
 
 use std::fmt::Write;
-use std::fs;
 use std::io::{self, IsTerminal, Read};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anyhow::{Context, anyhow};
 use image::RgbImage;
@@ -16,6 +15,7 @@ use whitted::film::{Difference, WholeFile};
 use super::args::CompareArgs;
 use super::failure::Failure;
 use super::streams;
+use super::target::check_spared;
 
 /// The file name that stands for standard input or output.
 const STREAM: &str = "-";
@@ -93,15 +93,7 @@ impl Map {
                 path.display()
             )));
         }
-        let place = |path: &Path| fs::canonicalize(path).ok();
-        let is_input = |input: &&PathBuf| place(input).is_some_and(|it| Some(it) == place(path));
-        if let Some(input) = [&args.a, &args.b].into_iter().find(is_input) {
-            return Err(Failure::usage(anyhow!(
-                "--heatmap {}: would replace {}, which is compared; name another file",
-                path.display(),
-                input.display()
-            )));
-        }
+        check_spared("--heatmap", &file, "which is compared", [&args.a, &args.b])?;
         Ok(Self::File(file))
     }
 }

@@ -5,7 +5,7 @@ use std::time::Instant;
 use anyhow::Context;
 use image::RgbImage;
 use whitted::classic::{CLASSIC_SIZE, render_classic};
-use whitted::film::{Difference, Film, Label, Share, encode};
+use whitted::film::{Difference, Film, Label, Share, WholeFile, encode};
 use whitted::render::{Goal, Outcome, RayCounts, RenderOptions, Rendering};
 use whitted::scene::{Loaded, Scene};
 
@@ -20,7 +20,7 @@ use super::options::{
 use super::preview::Preview;
 use super::signals::Signals;
 use super::stats::{Errors, Seconds, Statistics};
-use super::target::{Picture, StatsTarget, check_apart};
+use super::target::{Picture, StatsTarget, check_apart, check_spared};
 use super::warnings::Warnings;
 use super::{finished, streams};
 
@@ -32,6 +32,21 @@ struct Task {
     stats: Option<StatsTarget>,
 }
 
+impl Task {
+    /// The files that it writes, by the flags that name them.
+    fn results(&self) -> impl Iterator<Item = (&'static str, &WholeFile)> {
+        let picture = match &self.picture {
+            Picture::File(file) => Some(("--output", file.file())),
+            Picture::Stdout => None,
+        };
+        let stats = match &self.stats {
+            Some(StatsTarget::File(file)) => Some(("--stats", file)),
+            Some(StatsTarget::Stdout) | None => None,
+        };
+        picture.into_iter().chain(stats)
+    }
+}
+
 /// Renders as `args` say; `started` is when the program did.
 pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
     let signals = Signals::watch().context("signals cannot be watched")?;
@@ -40,7 +55,7 @@ pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
     check_size(args)?;
     let loading = Instant::now();
     let rows = (args.rules == Rules::Classic).then_some(CLASSIC_SIZE);
-    let Loaded { scene, warnings: odd } = args.seen.load(rows)?;
+    let Loaded { scene, warnings: odd, files } = args.seen.load(rows)?;
     let warnings = Warnings::new(args);
     for warning in odd {
         warnings.add(warning.to_string());
@@ -56,7 +71,13 @@ pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
     let several = shares.len() > 1;
     let mut tasks = Vec::new();
     for share in shares {
-        tasks.push(task(args, &scene, &hash, share, several, started)?);
+        let task = task(args, &scene, &hash, share, several, started)?;
+        let (read, reference) = ("which the scene is read from", "the reference");
+        for (flag, result) in task.results() {
+            check_spared(flag, result, read, &files)?;
+            check_spared(flag, result, reference, &args.reference)?;
+        }
+        tasks.push(task);
     }
     let reference = args.reference.as_deref().map(read_picture).transpose()?;
     for task in &tasks {

@@ -143,6 +143,23 @@ pub(crate) fn check_apart(picture: &Picture, stats: Option<&StatsTarget>) -> Res
     Err(Failure::usage(anyhow!("--output and --stats both go to {place}; name another for one")))
 }
 
+/// A result must not take the place of a file that it is made from.
+pub(crate) fn check_spared<'a>(
+    flag: &str,
+    result: &WholeFile,
+    purpose: &str,
+    sources: impl IntoIterator<Item = &'a PathBuf>,
+) -> Result<(), Failure> {
+    match sources.into_iter().find(|source| result.replaces(source)) {
+        None => Ok(()),
+        Some(source) => Err(Failure::usage(anyhow!(
+            "{flag} {}: would replace {}, {purpose}; name another file",
+            result.path().display(),
+            source.display()
+        ))),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

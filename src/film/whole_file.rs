@@ -150,6 +150,16 @@ impl WholeFile {
         matches!(self.place, Place::Disk { .. })
     }
 
+    /// Whether it would take the place of a file that is there, reached through whatever links and relative paths.
+    pub fn replaces(&self, file: &Path) -> bool {
+        match &self.place {
+            Place::Disk { target, .. } => {
+                matches!((target.canonicalize(), file.canonicalize()), (Ok(a), Ok(b)) if a == b)
+            }
+            Place::Stream => false,
+        }
+    }
+
     /// Whether both lead to the same file on disk, through whatever links and relative paths.
     pub fn is_same_file(&self, other: &Self) -> bool {
         match (&self.place, &other.place) {

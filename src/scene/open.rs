@@ -11,7 +11,7 @@ use super::{
     error::SceneError,
     format::SceneText,
     nff::{self, NffCounts},
-    obj::{self, files},
+    obj::{self, Model, files},
     parts::{CameraPlan, Parts, Placement},
     report::Names,
     stage, text,
@@ -57,6 +57,23 @@ pub struct Loaded {
     pub scene: Scene,
     /// What was odd.
     pub warnings: Vec<Warning>,
+    /// The files that were read: the scene's, and those of its models, materials and pictures.
+    pub files: Vec<PathBuf>,
+}
+
+/// The files that were read so far, and what was odd about them.
+#[derive(Default)]
+pub(super) struct Sources {
+    pub(super) warnings: Vec<Warning>,
+    files: Vec<PathBuf>,
+}
+
+impl Sources {
+    /// Moves what a model says to the rest.
+    fn take_from(&mut self, model: &mut Model) {
+        self.warnings.append(&mut model.warnings);
+        self.files.append(&mut model.files);
+    }
 }
 
 /// A scene that is not yet built, and what its files say besides.
@@ -66,7 +83,7 @@ pub(super) struct Gathered {
     pub(super) names: Names,
     /// The entities of an NFF file.
     pub(super) entities: Option<NffCounts>,
-    pub(super) warnings: Vec<Warning>,
+    pub(super) sources: Sources,
 }
 
 /// The scene that `name` means: the built-in one of that name, or the file.
@@ -74,15 +91,15 @@ pub(super) struct Gathered {
 /// # Errors
 /// There is no such scene, or what is wrong with it.
 pub fn load(name: &str, options: &LoadOptions) -> Result<Loaded, SceneError> {
-    let Gathered { name, parts, warnings, .. } = gather(name, options)?;
-    Ok(Loaded { scene: Scene::assemble(&name, parts)?, warnings })
+    let Gathered { name, parts, sources: Sources { warnings, files }, .. } = gather(name, options)?;
+    Ok(Loaded { scene: Scene::assemble(&name, parts)?, warnings, files })
 }
 
 /// The parts of the scene that `name` means, changed as the user likes.
 pub(super) fn gather(name: &str, options: &LoadOptions) -> Result<Gathered, SceneError> {
     let mut found = found(name, options)?;
     for place in &options.models {
-        add(&mut found.parts, place, &mut found.warnings)?;
+        add(&mut found.parts, place, &mut found.sources)?;
     }
     let CameraPlan { eye, look_at, up, vertical_fov } = &mut found.parts.camera;
     for (ours, users) in [(eye, options.eye), (look_at, options.look_at), (up, options.up)] {
@@ -98,11 +115,11 @@ pub(super) fn gather(name: &str, options: &LoadOptions) -> Result<Gathered, Scen
 
 /// The parts of the scene that `name` means, as they are.
 fn found(name: &str, options: &LoadOptions) -> Result<Gathered, SceneError> {
-    let (mut warnings, mut entities) = (Vec::new(), None);
+    let (mut sources, mut entities) = (Sources::default(), None);
     if let Some(found) = builtins().iter().find(|b| b.name == name) {
         let parts = found.parts(options.objects)?;
         let names = found.desc().map_or_else(|_| Names::default(), |desc| names(&desc));
-        return Ok(Gathered { name: name.to_owned(), parts, names, entities, warnings });
+        return Ok(Gathered { name: name.to_owned(), parts, names, entities, sources });
     }
     let path = Path::new(name);
     let kind = path.extension().map(|e| e.to_string_lossy().to_lowercase());
@@ -111,11 +128,12 @@ fn found(name: &str, options: &LoadOptions) -> Result<Gathered, SceneError> {
         return Err(SceneError::NotGenerated { name: name.to_owned(), known });
     }
     let (parts, names) = match kind.as_deref() {
-        Some("obj") => (model_alone(path, options, &mut warnings)?, Names::default()),
-        Some("toml") => scene_file(path, &mut warnings)?,
+        Some("obj") => (model_alone(path, options, &mut sources)?, Names::default()),
+        Some("toml") => scene_file(path, &mut sources)?,
         Some("nff") => {
             let scene = nff::load_nff(path, options.rows)?;
-            warnings.extend(scene.warnings);
+            sources.warnings.extend(scene.warnings);
+            sources.files.push(path.to_owned());
             entities = Some(scene.counts);
             (scene.parts, Names::default())
         }
@@ -125,7 +143,7 @@ fn found(name: &str, options: &LoadOptions) -> Result<Gathered, SceneError> {
         }
     };
     let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(Gathered { name: stem, parts, names, entities, warnings })
+    Ok(Gathered { name: stem, parts, names, entities, sources })
 }
 
 /// What a description calls its parts.
@@ -144,10 +162,10 @@ fn names(desc: &SceneDesc) -> Names {
 fn model_alone(
     path: &Path,
     options: &LoadOptions,
-    warnings: &mut Vec<Warning>,
+    sources: &mut Sources,
 ) -> Result<Parts, SceneError> {
     let mut model = obj::load_model(path)?;
-    warnings.append(&mut model.warnings);
+    sources.take_from(&mut model);
     let up = options.up.filter(|up| up.is_finite()).unwrap_or(DVec3::Y);
     stage::stage(model, up, options.fov).map_err(|source| SceneError::Shape {
         object: 1,
@@ -157,7 +175,7 @@ fn model_alone(
 }
 
 /// The scene of a TOML file; what it names is looked for beside it.
-fn scene_file(path: &Path, warnings: &mut Vec<Warning>) -> Result<(Parts, Names), SceneError> {
+fn scene_file(path: &Path, sources: &mut Sources) -> Result<(Parts, Names), SceneError> {
     let shown = path.display().to_string();
     let not_read = |source| SceneError::Text { path: shown.clone(), source };
     let bytes = text::read_limited(path, LARGEST_SCENE).map_err(not_read)?;
@@ -167,23 +185,28 @@ fn scene_file(path: &Path, warnings: &mut Vec<Warning>) -> Result<(Parts, Names)
     let scene = SceneText::parse(&shown, &text, &|file| {
         file.starts_with(builtin::PREFIX) || files::find(base, file).is_some()
     })?;
-    let mut images = |name: &str| picture(base, name);
+    let mut pictures = Vec::new();
+    let mut images = |name: &str| picture(base, name, &mut pictures);
     let mut models = |name: &str| {
         let Some(file) = files::find(base, name) else {
             return Err(no_file("model", name, base));
         };
         let mut model = obj::load_model(&file)?;
-        warnings.append(&mut model.warnings);
+        sources.take_from(&mut model);
         Ok(model)
     };
     let names = names(scene.desc());
-    Ok((scene.parts(&mut images, &mut models)?, names))
+    let parts = scene.parts(&mut images, &mut models)?;
+    sources.files.push(path.to_owned());
+    sources.files.append(&mut pictures);
+    Ok((parts, names))
 }
 
 /// The largest scene file that is read, in bytes.
 const LARGEST_SCENE: u64 = 1 << 28;
 
-fn picture(base: &Path, name: &str) -> Result<Image, SceneError> {
+/// The picture that `name` means; its file is added to `read`.
+fn picture(base: &Path, name: &str, read: &mut Vec<PathBuf>) -> Result<Image, SceneError> {
     if name.starts_with(builtin::PREFIX) {
         return builtin::picture(name);
     }
@@ -192,6 +215,7 @@ fn picture(base: &Path, name: &str) -> Result<Image, SceneError> {
     };
     let bytes = text::read_limited(&file, files::LARGEST_PICTURE)
         .map_err(|source| SceneError::Text { path: file.display().to_string(), source })?;
+    read.push(file);
     Ok(Image::decode(name, &bytes)?)
 }
 
@@ -200,13 +224,9 @@ fn no_file(what: &'static str, name: &str, base: &Path) -> SceneError {
     SceneError::NoFile { what, name: name.to_owned(), folder: folder.display().to_string() }
 }
 
-fn add(
-    parts: &mut Parts,
-    place: &ModelPlace,
-    warnings: &mut Vec<Warning>,
-) -> Result<(), SceneError> {
+fn add(parts: &mut Parts, place: &ModelPlace, sources: &mut Sources) -> Result<(), SceneError> {
     let mut model = obj::load_model(&place.path)?;
-    warnings.append(&mut model.warnings);
+    sources.take_from(&mut model);
     let bounds = model.mesh.bounds();
     let (free, scale) = stage::free_place(parts, bounds.extent(), place.size);
     let at = place.at.unwrap_or(free);

@@ -75,7 +75,7 @@ pub fn inspect_scene(name: &str) -> Result<SceneReport, SceneError> {
         lights: parts.lights,
         names: found.names,
         entities: found.entities,
-        warnings: found.warnings,
+        warnings: found.sources.warnings,
     })
 }
 

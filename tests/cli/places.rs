@@ -1,6 +1,7 @@
 //! Places that cannot be written: one line, code 1, nothing written.
 
 use std::fs;
+use std::path::Path;
 
 use super::{assert_refused, render};
 use crate::program::{folder, names_in, run};
@@ -61,4 +62,43 @@ fn a_refused_render_keeps_the_picture_of_the_last_one() {
         assert_eq!(fs::read(&path).expect("readable"), b"kept");
     }
     assert_eq!(names_in(folder.path()), ["assignment.png"]);
+}
+
+/// Oracle: the bytes of every file before. The default name is one that the model's picture may well have.
+#[test]
+fn what_a_picture_is_made_from_is_not_replaced() {
+    let folder = folder();
+    let write =
+        |name: &str, text: &str| fs::write(folder.path().join(name), text).expect("written");
+    let texture = Path::new(env!("CARGO_MANIFEST_DIR")).join("textures/flower.png");
+    fs::copy(texture, folder.path().join("crate.png")).expect("copied");
+    write("crate.mtl", "newmtl m\nmap_Kd crate.png\n");
+    write(
+        "crate.obj",
+        "mtllib crate.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n",
+    );
+    write(
+        "a.toml",
+        "resolution = [9, 9]\ndepth = 1\nbackground = [0, 0, 0]\n\
+         camera = { eye = [0, 0, 5], look_at = [0, 0, 0], up = [0, 1, 0], vertical_fov = 40 }\n\
+         [[model]]\nfile = \"crate.obj\"\n",
+    );
+    let parts =
+        run(folder.path(), &["render", "--size", "9x9", "--tile", "1/2,2/2", "-o", "p.png"]);
+    assert_eq!(parts.status.code(), Some(0));
+    let all = ["crate.obj", "crate.mtl", "crate.png", "a.toml", "p-1of2.png", "p-2of2.png"];
+    let bytes = || all.map(|name| fs::read(folder.path().join(name)).expect("there"));
+    let before = bytes();
+    for (arguments, part) in [
+        (&["render", "crate.obj"][..], "--output crate.png: would replace crate.png"),
+        (&["render", "crate.obj", "--stats", "crate.obj", "-o", "x.png"], "--stats crate.obj"),
+        (&["render", "--obj", "crate.obj", "-o", "crate.png"], "--output crate.png"),
+        (&["render", "a.toml", "--stats", "a.toml"], "--stats a.toml"),
+        (&["render", "a.toml", "--stats", "crate.mtl"], "--stats crate.mtl"),
+        (&["render", "-o", "p-1of2.png", "--reference", "p-1of2.png"], "the reference"),
+        (&["merge", "p-1of2.png", "p-2of2.png", "-o", "p-2of2.png"], "one of the parts"),
+    ] {
+        assert_refused(&run(folder.path(), arguments), 2, &[part, "name another file"]);
+    }
+    assert_eq!(bytes(), before);
 }

@@ -118,8 +118,9 @@ impl<'a> Builder<'a> {
             warnings.push(self.warning(t, message));
         }
         warnings.sort_by(|a, b| (&a.file, a.line).cmp(&(&b.file, b.line)));
+        let files = std::mem::take(&mut self.library.files);
         let mesh = self.mesh(cut.corners)?;
-        Ok(Model { mesh, materials: materials.list, material_of: cut.material_of, warnings })
+        Ok(Model { mesh, materials: materials.list, material_of: cut.material_of, warnings, files })
     }
 
     fn warning(&self, at: Tally, message: String) -> Warning {

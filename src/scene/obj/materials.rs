@@ -12,7 +12,11 @@
 //!
 //! Fresnel's terms of `illum` 5 and 7 are not Whitted's and left out. Colours are sRGB display values.
 
-use std::{collections::HashMap, path::Path, sync::Arc};
+use std::{
+    collections::HashMap,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use rayon::prelude::*;
 
@@ -40,6 +44,8 @@ pub(super) struct Library {
     materials: HashMap<String, Entry>,
     pub(super) textures: Vec<TextureReport>,
     pub(super) warnings: Vec<Warning>,
+    /// The files of the libraries and the pictures.
+    pub(super) files: Vec<PathBuf>,
     /// Whether a library was named at all.
     pub(super) is_named: bool,
 }
@@ -77,6 +83,7 @@ impl Library {
                     continue;
                 };
                 let mtl_path = file.display().to_string();
+                library.files.push(file.clone());
                 match text::read_limited(&file, LARGEST_LIBRARY) {
                     Ok(bytes) => match decode(&bytes) {
                         Ok(text) => {
@@ -124,6 +131,7 @@ impl Library {
                 names.push(&picture.name);
             }
         }
+        self.files.extend(names.iter().filter_map(|name| files::find(base, name)));
         let pictures: Vec<Result<Arc<Image>, String>> =
             names.par_iter().map(|name| read_picture(base, name).map(Arc::new)).collect();
         let pictures: HashMap<String, Result<Arc<Image>, String>> =

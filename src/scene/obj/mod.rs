@@ -21,7 +21,7 @@ mod statement;
 mod vertices;
 pub(super) mod weld;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 pub use self::{
     error::ModelError,
@@ -44,6 +44,8 @@ pub struct Model {
     pub material_of: Vec<u32>,
     /// What was odd about the file.
     pub warnings: Vec<Warning>,
+    /// The files that were read: its own, those of its materials and of their pictures.
+    pub files: Vec<PathBuf>,
 }
 
 /// Reads the model of an OBJ file, its material libraries and their pictures.
@@ -53,7 +55,9 @@ pub struct Model {
 pub fn load_model(path: &Path) -> Result<Model, ModelError> {
     let (obj, library) = read(path)?;
     let shown = path.display().to_string();
-    build::Builder::new(&shown, obj, library)?.model()
+    let mut model = build::Builder::new(&shown, obj, library)?.model()?;
+    model.files.push(path.to_owned());
+    Ok(model)
 }
 
 /// As [`load_model`], and counts what the file holds.
