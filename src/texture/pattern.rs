@@ -5,11 +5,11 @@ use glam::DVec3;
 use crate::{color::Rgb, geometry::Similarity};
 
 /// A number of a pair of whole numbers that tells it from its neighbours, and from those that are skipped where a pixel
-/// is wider than a cell.
+/// is wider than a cell. Never 0, which is the number of what has no cells.
 #[inline(always)]
 fn number([a, b]: [f64; 2]) -> u32 {
     let word = |x: f64| (x as i64) as u32;
-    word(a).wrapping_mul(0x9e37_79b1) ^ word(b).wrapping_mul(0x85eb_ca77)
+    (word(a).wrapping_mul(0x9e37_79b1) ^ word(b).wrapping_mul(0x85eb_ca77)).max(1)
 }
 
 /// Squares in the plane of x and z: the colour is `even` where ⌊(x − oₓ)/s⌋ + ⌊(z − o_z)/s⌋ is even.
@@ -103,6 +103,7 @@ mod tests {
             }
         }
         assert_eq!(checker.at(DVec3::new(-3.0, 0.0, 0.0)).0, B);
+        assert_ne!(checker.at(DVec3::ZERO).1, 0);
         assert_eq!(checker.at(DVec3::new(-3.0, 0.0, -3.0)).0, A);
     }
 
