@@ -2,7 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::round::{Pixel, Threshold};
+use super::{
+    look::ONE_COLOR,
+    round::{Pixel, Threshold},
+};
 use crate::aa::{Sample, refined::Stage};
 
 /// Rays that the corners of a suspect pixel cost, most being shared or not traced; and those of one that is not
@@ -40,9 +43,10 @@ impl Worth {
         };
         let rays = camera_rays * center.rays as f32;
         if pixel.is_due() {
-            // Where neighbours differ, the error tells.
+            // Where neighbours differ in colour, the error tells.
+            let is_told = pixel.suspect && pixel.contrast >= ONE_COLOR;
             let after = 1 + pixel.points();
-            let unmet = if pixel.suspect { 0.0 } else { pixel.least.unmet_error(after) };
+            let unmet = if is_told { 0.0 } else { pixel.least.unmet_error(after) };
             let (if_short, expected) = (pixel.error.max(unmet), expected + SHOWN * unmet);
             return Self { error: f32::INFINITY, if_short, rays, expected };
         }
@@ -150,5 +154,18 @@ mod tests {
                 );
             }
         }
+    }
+
+    /// Where a pixel skips cells of a pattern, those around it may all show the same colour by chance.
+    #[test]
+    fn a_pixel_of_its_neighbours_colour_is_sampled_also_if_time_is_short() {
+        let (stages, center) = (stages(64), Sample { rays: 3, ..Sample::default() });
+        let least = Least { samples: 8, if_alike: 8, part: 0.5 };
+        let if_short = |contrast: f32| {
+            let pixel = Pixel { suspect: true, contrast, error: 0.1, least, ..Pixel::default() };
+            Worth::of(&pixel, 0.1, &stages, &center).if_short
+        };
+        assert!(if_short(0.0) > 1000.0);
+        assert_eq!(if_short(1e4), 0.1);
     }
 }
