@@ -32,13 +32,13 @@ pub enum AntiAliasing {
     None,
     /// Rays through the centres of `side` × `side` cells.
     Grid {
-        /// Cells along a side of the pixel; from 1 to 64 in what is read from text.
+        /// Cells along a side of the pixel, from 1 to 64.
         side: u32,
     },
     /// As many rays in each pixel, at the places of a [sequence](sobol::Sequence) other than that of `Adaptive`: for
     /// references.
     Sequence {
-        /// Rays through each pixel; best a power of two.
+        /// Rays through each pixel, from 1 to 2²⁰; best a power of two.
         count: u32,
     },
     /// Rays where the picture needs them: one through each centre, more where those of neighbours met different things
@@ -46,7 +46,7 @@ pub enum AntiAliasing {
     Adaptive {
         /// The error of a pixel that is good enough: root mean square of its channels, in levels of 255.
         error: f32,
-        /// The most rays through a pixel; at least 1, and 2 or 3 are as 1, since what a pixel gets after its centre is at least
+        /// The most rays through a pixel, from 1 to 2²⁰; 2 or 3 are as 1, since what a pixel gets after its centre is at least
         /// three.
         most: u32,
     },
@@ -143,6 +143,16 @@ impl fmt::Display for AntiAliasing {
             Self::Sequence { count } => write!(f, "sobol:{count}"),
             Self::Adaptive { error, most } => write!(f, "adaptive:{error},{most}"),
         }
+    }
+}
+
+impl AntiAliasing {
+    /// Whether its numbers are those of a mode.
+    ///
+    /// # Errors
+    /// Those of reading it from text.
+    pub fn check(self) -> Result<(), AaError> {
+        self.to_string().parse::<Self>().map(|_| ())
     }
 }
 

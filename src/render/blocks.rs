@@ -121,7 +121,9 @@ pub fn blocks(part: &Tile, aa: AntiAliasing, goal: Goal) -> Vec<Tile> {
     };
     let side = match aa {
         AntiAliasing::None => side(RAYS, 1, SMALLEST, LARGEST),
-        AntiAliasing::Grid { side: cells } => side(RAYS, cells * cells, SMALLEST, LARGEST),
+        AntiAliasing::Grid { side: cells } => {
+            side(RAYS, cells.saturating_pow(2), SMALLEST, LARGEST)
+        }
         AntiAliasing::Sequence { count } => side(RAYS, count, SMALLEST, LARGEST),
         AntiAliasing::Adaptive { most, .. } => {
             side(MOST_RAYS, most, SMALLEST_ADAPTIVE, LARGEST_ADAPTIVE)

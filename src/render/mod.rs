@@ -41,7 +41,7 @@ pub use picture::{Picture, picture};
 
 pub use crate::trace::RayCounts;
 use crate::{
-    aa::AntiAliasing,
+    aa::{AaError, AntiAliasing},
     camera::Camera,
     film::{Film, Tile},
     scene::Scene,
@@ -180,6 +180,9 @@ pub enum RenderError {
         /// Rows of the picture.
         height: u32,
     },
+    /// The mode has a number that no mode has.
+    #[error(transparent)]
+    Mode(#[from] AaError),
     /// A goal was set for a mode that gives every pixel the same rays.
     #[error("an error or a time to render to needs the anti-aliasing mode `adaptive`, not `{aa}`")]
     Goal {
@@ -194,7 +197,8 @@ pub enum RenderError {
 /// every time, but for [`Goal::Until`].
 ///
 /// # Errors
-/// The part that is wanted is not in the picture, the goal needs another mode, or the threads cannot be started.
+/// The part that is wanted is not in the picture, the mode has a number that none has, the goal needs another mode, or the
+/// threads cannot be started.
 pub fn render(
     scene: &Scene,
     options: &RenderOptions,
@@ -244,6 +248,7 @@ pub fn render_blocks(
 ) -> Result<Effort, RenderError> {
     let started = Instant::now();
     let part = part(scene, options)?;
+    options.aa.check()?;
     let is_adaptive = matches!(options.aa, AntiAliasing::Adaptive { .. });
     if options.goal != Goal::Mode && !is_adaptive {
         return Err(RenderError::Goal { aa: options.aa });

@@ -6,8 +6,11 @@ use std::time::{Duration, Instant};
 
 use glam::DVec2;
 use whitted::Rgb;
+use whitted::aa::AntiAliasing;
 use whitted::film::Tile;
-use whitted::render::{Block, Goal, RenderOptions, Sink, Unfinished, render, render_blocks};
+use whitted::render::{
+    Block, Goal, RenderError, RenderOptions, Sink, Unfinished, render, render_blocks,
+};
 use whitted::scene::{LoadOptions, load, load_builtin};
 
 use super::{Seen, picture_of};
@@ -261,5 +264,22 @@ fn a_goal_needs_the_adaptive_mode() {
         };
         let error = render(&scene, &options, &|_| ()).expect_err(aa).to_string();
         assert!(error.contains(&format!("`adaptive`, not `{aa}`")), "{error}");
+    }
+}
+
+/// A library's user may make modes that no text gives.
+#[test]
+fn a_mode_with_numbers_out_of_range_is_an_error() {
+    let scene = load_builtin("assignment").expect("a scene");
+    for aa in [
+        AntiAliasing::Grid { side: 0 },
+        AntiAliasing::Grid { side: 1 << 16 },
+        AntiAliasing::Sequence { count: 0 },
+        AntiAliasing::Adaptive { error: f32::NAN, most: 4 },
+        AntiAliasing::Adaptive { error: 1.0, most: 0 },
+    ] {
+        let options = RenderOptions { size: Some([8, 8]), aa, ..RenderOptions::default() };
+        let error = render(&scene, &options, &|_| ()).expect_err("out of range");
+        assert!(matches!(error, RenderError::Mode(_)), "{aa:?}: {error}");
     }
 }
