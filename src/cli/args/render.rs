@@ -67,13 +67,14 @@ pub(crate) struct RenderArgs {
 
     /// Share of the picture to render, the I-th of N equal ones counted from 1, for many machines. Several, such as
     /// 3/64,7/64, are rendered one after another, with the scene read once. Each goes to a file of its own, called
-    /// scene-3of64.png and so on unless --output names it; with several tiles, -3of64 is inserted into that name.
-    /// `whitted merge` joins them
+    /// scene-3of64.png and so on unless --output names it; with several tiles, -3of64 is inserted into that name
+    /// and that of --stats. `whitted merge` joins them
     #[arg(long, value_name = "I/N[,I/N...]", value_parser = parse_shares, conflicts_with = "crop", help_heading = "Picture")]
     pub(crate) tile: Option<Shares>,
 
     /// Go on from the checkpoint that an interrupted render of the same picture left beside the output, or from the
-    /// beginning if there is none. What is already finished is not rendered again
+    /// beginning if there is none. A finished .png or .exr is not rendered again, unless --stats or --reference asks
+    /// for more
     #[arg(long, help_heading = "Long renders")]
     pub(crate) resume: bool,
 
