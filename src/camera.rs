@@ -166,7 +166,8 @@ pub(crate) struct Cone {
 
 impl Cone {
     /// The side of a square as large as what the ray along the unit vector `dir` stands for, at distance 1 and right angles
-    /// to the ray: the film is farther away there, and seen aslant.
+    /// to the ray: a square of the film with side w subtends w² cos³θ at the angle θ from the axis, where it is 1/cos θ away
+    /// and seen aslant.
     #[inline(always)]
     pub(crate) fn width_along(&self, dir: DVec3) -> f32 {
         let cosine = dir.dot(self.axis);

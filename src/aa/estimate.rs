@@ -181,11 +181,6 @@ impl Spread {
         }
     }
 
-    /// The mean in display levels.
-    pub fn mean(&self) -> Vec3 {
-        self.origin + self.deviation / self.count.max(1) as f32
-    }
-
     /// The unbiased variance.
     pub fn variance(&self) -> f32 {
         if self.count < 2 {
@@ -286,6 +281,5 @@ mod tests {
         let expected = 4.0 * 127.5_f32.powi(2) / 3.0;
         assert!((spread.variance() / expected - 1.0).abs() < 1e-4, "{}", spread.variance());
         assert_eq!((spread.kinds(), spread.count(), spread.only_signature()), (2, 4, None));
-        assert!((spread.mean().x - 127.5).abs() < 1e-3);
     }
 }

@@ -65,7 +65,8 @@ pub(super) enum Entry {
 }
 
 impl Frame {
-    /// The frame in which `bounds` is within [−1, 1]³; `None` if they are not finite.
+    /// The frame in which `bounds` is within [−1, 1]³; `None` if they are not finite, or so far from the coordinates' origin that
+    /// roundings there are as large as they are.
     pub(super) fn new(bounds: &Bounds) -> Option<Self> {
         let half = bounds.size() / 2.0;
         let center = bounds.center();

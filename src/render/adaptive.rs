@@ -17,7 +17,7 @@ use super::{
     known::{APRON, Known},
     outlook::Outlook,
     plane::{Area, Plane, Tiled},
-    round::{Pixel, Round, Threshold, add_rays, is_disputed, is_picked},
+    round::{Pixel, Round, Threshold, add_rays, corners_of, is_picked},
 };
 use crate::{
     aa::{
@@ -195,11 +195,11 @@ impl Adaptive {
             if pixel.stage > 0 || !is_picked(threshold, x, y) {
                 continue;
             }
-            for (x, y) in [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)] {
+            for (x, y) in corners_of(x, y) {
                 let is_traced = |place: usize| corners.get(place).is_some_and(|c| c.rays > 0);
                 if tile.contains(x, y)
                     && !is_traced(tile.place_of(x, y))
-                    && (!pixel.suspect || is_disputed(centers, x, y))
+                    && pixel.needs_corner(centers, x, y)
                 {
                     is_wanted[tile.place_of(x, y)] = true;
                 }

@@ -25,7 +25,7 @@ pub(super) struct Cell {
     /// The squared error, in levels, as the pixel's own samples tell it.
     error: f32,
     kinds: Kinds,
-    /// The squared error if the one or the other of the others was met by chance.
+    /// The squared error if the first, or the second, of the other kinds was met by chance.
     by_chance: [f32; 2],
 }
 

@@ -52,7 +52,7 @@ impl<'a> Meter<'a> {
         Self { progress, state: Mutex::new(Progress { done: 0, total }) }
     }
 
-    /// Reports that `count` more are done; never that all are but by [`Meter::finish`].
+    /// Reports that `count` more are done.
     fn add(&self, count: u64) {
         let mut state = lock(&self.state);
         state.done = (state.done + count).min(state.total);
@@ -103,22 +103,15 @@ impl<'a, S: Sampler + Send> Crew<'a, S> {
         ((self.at_once as f32 / tile) as usize).max(1)
     }
 
-    /// Lets the workers do `work` on every tile of `area`; `counted` is whether a tile's pixels count as done.
-    ///
-    /// Tiles for which `stop` says so are left out.
-    pub(super) fn run(
-        &self,
-        area: &Area,
-        counted: bool,
-        stop: impl Fn() -> bool + Sync,
-        work: impl Fn(&mut S, &mut Scratch, &Area) + Sync,
-    ) {
-        self.run_groups(area, 1, counted, stop, |sampler, scratch, tiles| {
-            work(sampler, scratch, &tiles[0]);
-        });
+    /// Lets the workers do `work` on every tile of `area`.
+    pub(super) fn run(&self, area: &Area, work: impl Fn(&S, &Area) + Sync) {
+        self.run_groups(area, 1, false, || false, |sampler, _, tiles| work(sampler, &tiles[0]));
     }
 
-    /// As [`Crew::run`], with up to `count` tiles at once, which are neighbours.
+    /// Lets the workers do `work` on groups of up to `count` tiles of `area`, which are neighbours; `counted` is whether their
+    /// pixels count as done.
+    ///
+    /// Groups for which `stop` says so are left out.
     pub(super) fn run_groups(
         &self,
         area: &Area,

@@ -12,7 +12,7 @@ const CALM: usize = 2;
 /// have its colour: where nearly all of these differ from their own neighbours, the likeness is chance. `contrast_at`
 /// tells how much they do, and that those do not which are not known.
 ///
-/// What the pixel gets must not depend on it, or it would on places more than a pixel away.
+/// What the pixel gets must not depend on it, or it would on places more than two pixels away.
 pub(super) fn hidden_error(contrast_at: impl Fn(i64, i64) -> f32, x: i64, y: i64) -> f32 {
     let mut contrasts = [0.0; 8];
     let around = (0..9).filter(|k| *k != 4).map(|k| (x + k % 3 - 1, y + k / 3 - 1));

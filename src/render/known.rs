@@ -13,7 +13,7 @@ use super::{
     look::{ONE_COLOR, corrected, skips_cells},
     outlook::{Outlook, Worth},
     plane::{Area, Plane, Tiled},
-    round::{Chosen, Pixel, Threshold, is_disputed, is_picked},
+    round::{Chosen, Pixel, Threshold, is_picked},
     window::{Survey, Window},
 };
 use crate::{
@@ -69,8 +69,7 @@ impl Known {
         let has_hints = crew.has_hints();
         let of_one_color = Mutex::new(Vec::new());
         let known = Mutex::new(&mut *self);
-        let never = || false;
-        crew.run(&area, false, never, |sampler, _, tile| {
+        crew.run(&area, |sampler, tile| {
             let survey = Window::of_centers(tile, APRON, centers).survey();
             let own = centers.part(tile);
             let hint = |(x, y): (i64, i64)| sampler.hint(x as u32, y as u32);
@@ -169,7 +168,7 @@ impl Known {
             if let (true, Some(refined)) = (has_changed, &pixel.refined) {
                 *self.colors.at_mut(x, y) = refined.color();
                 // Corners that only neighbours wanted do not count, or it would depend on whether those are rendered.
-                let own = !pixel.suspect || is_disputed(centers, x, y);
+                let own = pixel.needs_corner(centers, x, y);
                 *self.samples.at_mut(x, y) = 1 + u32::from(own) + refined.points();
             }
             if threshold.is_final() {

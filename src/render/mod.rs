@@ -88,8 +88,9 @@ pub enum Goal {
 /// How a render ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outcome {
-    /// The squared error in levels for each ray, of the pixel's next stage, at which pixels stopped, if the goal was an
-    /// error: the same value gives the same pixels, whatever part is rendered.
+    /// If the goal was an error, the threshold of the last step: pixels got more rays as long as their squared error in
+    /// levels, for each ray of their next stage, was at least this. The same value gives the same pixels, whatever part is
+    /// rendered.
     pub per_ray: Option<f32>,
     /// The error that was wanted but not reached.
     pub missed_error: Option<f64>,

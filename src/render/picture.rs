@@ -42,8 +42,8 @@ impl Picture {
 /// The part `part` of a picture `width` pixels wide, of whatever `new_sampler`'s samplers see; each worker thread has
 /// its own.
 ///
-/// Every pixel depends on its place in the whole picture and on what is seen within a pixel's width around it, never on
-/// `part`.
+/// Every pixel depends on its place in the whole picture and on what is seen within two pixels of it, never on
+/// `part`; the estimate of the error also on where parts end, but for the adaptive mode.
 pub fn picture<S: Sampler + Send>(
     part: &Tile,
     width: u32,

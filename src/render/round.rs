@@ -100,6 +100,11 @@ impl Pixel {
         self.refined.as_ref().map_or(0, |refined| refined.points())
     }
 
+    /// Whether a corner of it is to be traced: around others of a suspect pixel all centres saw the same, and tell.
+    pub(super) fn needs_corner(&self, centers: &Plane<Sample>, x: i64, y: i64) -> bool {
+        !self.suspect || is_disputed(centers, x, y)
+    }
+
     /// Whether it is to get more samples whatever its error.
     pub(super) fn is_due(&self) -> bool {
         let is_alike = || self.refined.as_ref().is_some_and(|refined| refined.is_alike());
@@ -145,11 +150,16 @@ pub(super) struct Chosen {
 }
 
 /// Whether the four centres around a corner saw different things.
-pub(super) fn is_disputed(centers: &Plane<Sample>, x: i64, y: i64) -> bool {
+fn is_disputed(centers: &Plane<Sample>, x: i64, y: i64) -> bool {
     let signature = centers.at(x, y).signature;
     [(x - 1, y), (x, y - 1), (x - 1, y - 1)]
         .iter()
         .any(|&(x, y)| centers.at(x, y).signature != signature)
+}
+
+/// The corners of a pixel, each named by the pixel to its lower right.
+pub(super) fn corners_of(x: i64, y: i64) -> [(i64, i64); 4] {
+    [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)]
 }
 
 /// Whether the threshold is for this pixel at all.
@@ -188,7 +198,7 @@ impl Round<'_> {
                 continue;
             }
             let corner = |(x, y): (i64, i64)| {
-                if !one.pixel.suspect || is_disputed(self.centers, x, y) {
+                if one.pixel.needs_corner(self.centers, x, y) {
                     // Without rays it was to be traced, but time was up.
                     let sample = self.corners.get(x, y).filter(|sample| sample.rays > 0)?;
                     return Some((sample.color, sample.signature));
@@ -197,9 +207,7 @@ impl Round<'_> {
                 let sum: Rgb = around.iter().map(|&(x, y)| self.centers.at(x, y).color).sum();
                 Some((sum * 0.25, center.signature))
             };
-            let [Some(a), Some(b), Some(c), Some(d)] =
-                [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)].map(corner)
-            else {
+            let [Some(a), Some(b), Some(c), Some(d)] = corners_of(x, y).map(corner) else {
                 continue;
             };
             self.judge(one, Box::new(Refined::new(*corners, center, &[a, b, c, d])));

@@ -57,7 +57,6 @@ impl Sampler for Worker<'_> {
             let dirs = some.iter().map(|place| self.view.direction(*place));
             self.tracer.trace(self.view.eye(), dirs, &mut self.traced);
             samples.extend(self.traced.iter().map(|traced| Sample {
-                // A NaN, which no valid scene has, would be black.
                 color: traced.color.max(Rgb::ZERO).min(Rgb::ONE),
                 signature: traced.signature,
                 cell: traced.cell,

@@ -75,9 +75,9 @@ struct Task {
     weight: Rgb,
     /// Camera rays have level 1.
     level: u32,
-    /// How long the way from the camera was, and the side of what it stands for at distance 1; zero for camera rays, whose
-    /// direction tells.
+    /// The length of the path from the camera so far.
     way: f32,
+    /// The side of the square that it stands for, by length of the path; 0 for camera rays, whose direction tells.
     width: f32,
     /// Which of the samples asked for it belongs to.
     sample: u32,

@@ -64,7 +64,7 @@ pub(super) struct Wavefront {
     hits: Vec<Waiting>,
     /// The rays to each light.
     asks: Vec<Vec<Ask>>,
-    /// The bytes of all these, and of how many they are full.
+    /// The bytes that all these take, and how many make it full.
     bytes: usize,
     most: usize,
     /// Those to one light in the order in which they are traced: the place on the curve, and below it which ray.
