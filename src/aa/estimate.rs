@@ -127,6 +127,9 @@ impl Look {
     }
 }
 
+/// More kinds of things in a pixel than this are as many: each sample is compared with one of each.
+const MOST_KINDS: usize = 256;
+
 /// The mean and spread of a pixel's samples, and how many different things they met.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Spread {
@@ -158,7 +161,7 @@ impl Spread {
         self.deviation += deviation;
         self.square += deviation.length_squared() / 3.0;
         self.count += 1;
-        if !self.signatures.contains(&signature) {
+        if self.signatures.len() < MOST_KINDS && !self.signatures.contains(&signature) {
             self.signatures.push(signature);
         }
     }
@@ -168,7 +171,7 @@ impl Spread {
         self.count
     }
 
-    /// The number of different signatures.
+    /// The number of different signatures, up to 256.
     pub fn kinds(&self) -> usize {
         self.signatures.len()
     }
@@ -281,5 +284,15 @@ mod tests {
         let expected = 4.0 * 127.5_f32.powi(2) / 3.0;
         assert!((spread.variance() / expected - 1.0).abs() < 1e-4, "{}", spread.variance());
         assert_eq!((spread.kinds(), spread.count(), spread.only_signature()), (2, 4, None));
+    }
+
+    /// A pixel may get 2²⁰ samples that all met something else.
+    #[test]
+    fn kinds_are_counted_up_to_some_number() {
+        let mut spread = Spread::about(Vec3::ZERO);
+        for signature in 0..1 << 20 {
+            spread.add(Vec3::ONE, signature);
+            assert_eq!(spread.kinds(), (signature as usize + 1).min(MOST_KINDS));
+        }
     }
 }
