@@ -77,20 +77,19 @@ impl Known {
             let may_be_calm = survey.suspects.is_empty() && !stages.is_empty();
             let is_calm = |outlook: &Outlook| may_be_calm && !outlook.may_exceed(least);
             let smooth = (may_be_calm && !has_hints).then(|| smooth_outlook(&survey, &own));
-            let (outlook, pixels) = smooth.filter(is_calm).map_or_else(
-                || {
-                    let mut pixels = pixels_of(tile, &survey, centers);
-                    for ((pixel, center), at) in pixels.iter_mut().zip(&own).zip(tile.pixels()) {
-                        let mut expected = pixel.worth.expected;
-                        if has_hints {
-                            expected += pixel.heed(hint(at), center.color);
-                        }
-                        pixel.worth = Worth::of(pixel, expected, stages, center);
+            let (outlook, pixels) = if let Some(calm) = smooth.filter(is_calm) {
+                (calm, Vec::new())
+            } else {
+                let mut pixels = pixels_of(tile, &survey, centers);
+                for ((pixel, center), at) in pixels.iter_mut().zip(&own).zip(tile.pixels()) {
+                    let mut expected = pixel.worth.expected;
+                    if has_hints {
+                        expected += pixel.heed(hint(at), center.color);
                     }
-                    (Outlook::of(pixels.iter().map(|pixel| pixel.worth)), pixels)
-                },
-                |outlook| (outlook, Vec::new()),
-            );
+                    pixel.worth = Worth::of(pixel, expected, stages, center);
+                }
+                (Outlook::of(pixels.iter().map(|pixel| pixel.worth)), pixels)
+            };
             let alike = survey.suspects.iter().filter(|(_, look)| look.contrast < ONE_COLOR);
             lock(&of_one_color).extend(alike.map(|(place, _)| tile.pixel_at(*place)));
             let colors = colors_of(tile, &survey.suspects, centers);

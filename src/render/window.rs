@@ -81,8 +81,8 @@ struct Row {
     starts: [usize; 3],
 }
 
-/// The squared second differences of the pixels of a row, and the squared differences of their opposite neighbours, each the
-/// mean of the channels, horizontal and vertical.
+/// The squared second differences of the pixels of a row, and the squared differences of their opposite neighbours: each the
+/// mean of the channels, and the sum of horizontal and vertical.
 struct Bends {
     curve: [f32; LANES],
     slope: [f32; LANES],
