@@ -1,7 +1,7 @@
 //! What the values of flags may be.
 
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use glam::DVec3;
@@ -163,6 +163,13 @@ pub(super) fn parse_model(text: &str) -> Result<ModelPlace, String> {
     }
     if name.is_empty() {
         return Err("give a file, such as model.obj or model.obj@0,0,-80*5".to_owned());
+    }
+    let is_followed = [".obj@", ".obj*"].iter().any(|part| name.to_lowercase().contains(part));
+    if is_followed && !Path::new(name).exists() {
+        return Err(
+            "what follows the file must be a place and a size, or one of them, such as model.obj@0,0,-80*5"
+                .to_owned(),
+        );
     }
     Ok(ModelPlace { path: PathBuf::from(name), at, size })
 }

@@ -40,6 +40,10 @@ fn bad_values_are_refused_on_one_line_before_anything_is_written() {
         (&["--objects", "0"], &["--objects", whole]),
         (&["--objects", "-5"], &["--objects", whole]),
         (&["--objects", "50000001"], &["--objects", "50000000"]),
+        (&["--obj", "a.obj*0"], &["--obj", "size is 0"]),
+        (&["--obj", "a.obj*"], &["--obj", "a place and a size"]),
+        (&["--obj", "a.obj@8,-15"], &["--obj", "a place and a size"]),
+        (&["--obj", "a.OBJ*4@1,2,3"], &["--obj", "a place and a size"]),
         (&["--objects", "7"], &["assignment", "fixed number", "spheres"]),
         (
             &["--progress", "plan"],
