@@ -115,6 +115,14 @@ impl AntiAliasing {
     /// The adaptive mode as it is without further numbers: errors of 4 levels, 64 rays per pixel.
     pub const ADAPTIVE: Self = Self::Adaptive { error: DEFAULT_ERROR, most: DEFAULT_MOST };
 
+    /// Whether its numbers are those of a mode.
+    ///
+    /// # Errors
+    /// Those of reading it from text.
+    pub fn check(self) -> Result<(), AaError> {
+        self.to_string().parse::<Self>().map(|_| ())
+    }
+
     /// The side of what a sample stands for, in pixels: that of the whole pixel where samples are added as they are needed.
     pub(crate) fn side_of_sample(self) -> f64 {
         match self {
@@ -143,16 +151,6 @@ impl fmt::Display for AntiAliasing {
             Self::Sequence { count } => write!(f, "sobol:{count}"),
             Self::Adaptive { error, most } => write!(f, "adaptive:{error},{most}"),
         }
-    }
-}
-
-impl AntiAliasing {
-    /// Whether its numbers are those of a mode.
-    ///
-    /// # Errors
-    /// Those of reading it from text.
-    pub fn check(self) -> Result<(), AaError> {
-        self.to_string().parse::<Self>().map(|_| ())
     }
 }
 

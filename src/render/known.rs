@@ -80,7 +80,7 @@ impl Known {
             let (outlook, pixels) = if let Some(calm) = smooth.filter(is_calm) {
                 (calm, Vec::new())
             } else {
-                let mut pixels = pixels_of(tile, &survey, centers);
+                let mut pixels = pixels_of(tile, &survey, &own, centers);
                 for ((pixel, center), at) in pixels.iter_mut().zip(&own).zip(tile.pixels()) {
                     let mut expected = pixel.worth.expected;
                     if has_hints {
@@ -207,10 +207,9 @@ fn smooth_outlook(survey: &Survey, centers: &[Sample]) -> Outlook {
     }))
 }
 
-/// The pixels of a tile, row by row, as their centres and the looks of those that are suspect tell.
-fn pixels_of(tile: &Area, survey: &Survey, centers: &Plane<Sample>) -> Vec<Pixel> {
-    let own = centers.part(tile);
-    let smooth = survey.smooth.iter().zip(&survey.noise).zip(&own);
+/// The pixels of a tile, row by row, as their `own` centres and the looks of those that are suspect tell.
+fn pixels_of(tile: &Area, survey: &Survey, own: &[Sample], centers: &Plane<Sample>) -> Vec<Pixel> {
+    let smooth = survey.smooth.iter().zip(&survey.noise).zip(own);
     let mut pixels = Vec::with_capacity(tile.len());
     pixels.extend(smooth.map(|((smooth, noise), center)| Pixel {
         error: smooth.max(noise.error()),
@@ -224,7 +223,7 @@ fn pixels_of(tile: &Area, survey: &Survey, centers: &Plane<Sample>) -> Vec<Pixel
     for (place, look) in &survey.suspects {
         let (x, y) = tile.pixel_at(*place);
         let skips = skips_cells(centers, x, y, look.contrast);
-        let detail = centers.at(x, y).detail;
+        let detail = own[*place].detail;
         let error = look.center_error().max(detail.squared_error());
         pixels[*place] = Pixel {
             suspect: true,
