@@ -6,8 +6,8 @@ use std::str::FromStr;
 
 use glam::DVec3;
 use whitted::film::{Share, Tile};
-use whitted::scene::ModelPlace;
 use whitted::scene::generators::MOST_OBJECTS;
+use whitted::scene::{ModelPlace, STANDARD_INPUT};
 
 use super::args::Shares;
 use super::memory;
@@ -125,6 +125,9 @@ pub(super) fn parse_objects(text: &str) -> Result<u32, String> {
 
 /// The name of a scene to study, in which a number of spheres is one that there may be.
 pub(super) fn parse_studied(text: &str) -> Result<String, String> {
+    if text == STANDARD_INPUT {
+        return Err("a study loads its scenes several times; name a file".to_owned());
+    }
     match text.strip_prefix("spheres:").map(parse_objects) {
         Some(Err(advice)) => Err(format!("{advice} after `spheres:`")),
         _ => Ok(text.to_owned()),

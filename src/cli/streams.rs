@@ -7,11 +7,17 @@ use anyhow::Context;
 
 use super::failure::Failure;
 
-/// Writes all of `bytes` to standard output; a reader that has left does not want the rest, which
-/// is no error.
+/// Writes all of `bytes` to standard output, as [`to_stdout`].
 pub(crate) fn write_stdout(bytes: &[u8]) -> Result<(), Failure> {
+    to_stdout(|stdout| stdout.write_all(bytes))
+}
+
+/// Has something written to standard output; a reader that has left does not want the rest, which is no error.
+pub(crate) fn to_stdout(
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), Failure> {
     let mut stdout = io::stdout().lock();
-    match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
+    match write(&mut stdout).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(error).context("standard output could not be written")?
         }

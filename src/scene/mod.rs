@@ -38,7 +38,7 @@ pub use self::{
     builtin::{Builtin, builtins, load_builtin, load_builtin_of},
     desc::SceneDesc,
     error::SceneError,
-    open::{LoadOptions, Loaded, ModelPlace, load},
+    open::{LoadOptions, Loaded, ModelPlace, STANDARD_INPUT, load},
     orbit::Orbit,
     parts::{CameraPlan, MeshPart, Parts},
     report::{Names, SceneReport, inspect_scene},

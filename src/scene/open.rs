@@ -10,11 +10,12 @@ use super::{
     desc::{SceneDesc, TextureDesc},
     error::SceneError,
     format::SceneText,
-    nff::{self, NffCounts},
+    nff::{self, NffCounts, NffScene},
     obj::{self, Model, files},
     parts::{CameraPlan, Parts, Placement},
     report::Names,
-    stage, text,
+    stage,
+    text::{self, TextError},
     warning::Warning,
 };
 use crate::texture::Image;
@@ -86,7 +87,11 @@ pub(super) struct Gathered {
     pub(super) sources: Sources,
 }
 
-/// The scene that `name` means: the built-in one of that name, or the file.
+/// The name that stands for standard input.
+pub const STANDARD_INPUT: &str = "-";
+
+/// The scene that `name` means: the built-in one of that name, the file, or for [`STANDARD_INPUT`] the scene that
+/// comes from there, as TOML or NFF, with what it names in the current folder.
 ///
 /// # Errors
 /// There is no such scene, or what is wrong with it.
@@ -128,21 +133,37 @@ fn found(name: &str, options: &LoadOptions) -> Result<Gathered, SceneError> {
         return Err(SceneError::NotGenerated { name: name.to_owned(), known });
     }
     let (parts, names) = match kind.as_deref() {
+        _ if name == STANDARD_INPUT => {
+            let text = read_text("standard input", || text::read_stdin(LARGEST_SCENE))?;
+            if nff::is_nff(&text) {
+                let scene = nff::parse_nff("standard input", &text, options.rows)?;
+                (nff_parts(scene, &mut entities, &mut sources), Names::default())
+            } else {
+                toml_parts("standard input", &text, Path::new(""), &mut sources)?
+            }
+        }
         Some("obj") => (model_alone(path, options, &mut sources)?, Names::default()),
-        Some("toml") => scene_file(path, &mut sources)?,
+        Some("toml") => {
+            let shown = path.display().to_string();
+            let text = read_text(&shown, || text::read_limited(path, LARGEST_SCENE))?;
+            sources.files.push(path.to_owned());
+            let base = path.parent().unwrap_or(Path::new(""));
+            toml_parts(&shown, &text, base, &mut sources)?
+        }
         Some("nff") => {
             let scene = nff::load_nff(path, options.rows)?;
-            sources.warnings.extend(scene.warnings);
             sources.files.push(path.to_owned());
-            entities = Some(scene.counts);
-            (scene.parts, Names::default())
+            (nff_parts(scene, &mut entities, &mut sources), Names::default())
         }
         _ => {
             let known = builtins().iter().map(|b| b.name).collect::<Vec<_>>().join(", ");
             return Err(SceneError::UnknownFile { name: name.to_owned(), known });
         }
     };
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let stem = match name {
+        STANDARD_INPUT => "stdin".to_owned(),
+        _ => path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+    };
     Ok(Gathered { name: stem, parts, names, entities, sources })
 }
 
@@ -174,15 +195,22 @@ fn model_alone(
     })
 }
 
-/// The scene of a TOML file; what it names is looked for beside it.
-fn scene_file(path: &Path, sources: &mut Sources) -> Result<(Parts, Names), SceneError> {
-    let shown = path.display().to_string();
-    let not_read = |source| SceneError::Text { path: shown.clone(), source };
-    let bytes = text::read_limited(path, LARGEST_SCENE).map_err(not_read)?;
-    let decoded = text::decode(&bytes).map_err(not_read)?;
-    let text = String::from_utf8_lossy(&decoded);
-    let base = path.parent().unwrap_or(Path::new(""));
-    let scene = SceneText::parse(&shown, &text, &|file| {
+/// The parts of an NFF scene.
+fn nff_parts(scene: NffScene, entities: &mut Option<NffCounts>, sources: &mut Sources) -> Parts {
+    sources.warnings.extend(scene.warnings);
+    *entities = Some(scene.counts);
+    scene.parts
+}
+
+/// The parts of a scene in TOML that messages call `shown`; what it names is looked for in `base`.
+fn toml_parts(
+    shown: &str,
+    text: &[u8],
+    base: &Path,
+    sources: &mut Sources,
+) -> Result<(Parts, Names), SceneError> {
+    let text = String::from_utf8_lossy(text);
+    let scene = SceneText::parse(shown, &text, &|file| {
         file.starts_with(builtin::PREFIX) || files::find(base, file).is_some()
     })?;
     let mut pictures = Vec::new();
@@ -197,9 +225,18 @@ fn scene_file(path: &Path, sources: &mut Sources) -> Result<(Parts, Names), Scen
     };
     let names = names(scene.desc());
     let parts = scene.parts(&mut images, &mut models)?;
-    sources.files.push(path.to_owned());
     sources.files.append(&mut pictures);
     Ok((parts, names))
+}
+
+/// The text of a scene that messages call `shown`.
+fn read_text(
+    shown: &str,
+    read: impl FnOnce() -> Result<Vec<u8>, TextError>,
+) -> Result<Vec<u8>, SceneError> {
+    let not_read = |source| SceneError::Text { path: shown.to_owned(), source };
+    let bytes = read().map_err(not_read)?;
+    Ok(text::decode(&bytes).map_err(not_read)?.into_owned())
 }
 
 /// The largest scene file that is read, in bytes.

@@ -1,5 +1,8 @@
 //! Standard streams: progress, help, lists, and readers that have left.
 
+use std::fs::{self, File};
+use std::path::Path;
+
 use serde_json::Value;
 
 use super::{SMALL, render};
@@ -100,4 +103,59 @@ fn scenes_are_listed_one_a_line_and_each_renders() {
         done(&run(folder.path(), &["render", name, "--size", "4x3"]));
         assert!(folder.path().join(format!("{name}.png")).is_file(), "{name}");
     }
+}
+
+/// Oracle: the same scenes as files.
+#[test]
+fn a_scene_may_come_from_standard_input() {
+    let rings = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/formats/spd/rings.nff");
+    let folder = folder();
+    let toml = run(folder.path(), &["scenes", "--show", "assignment"]);
+    done(&toml);
+    let scene = folder.path().join("scene.toml");
+    fs::write(&scene, &toml.stdout).expect("written");
+    for file in [scene.as_path(), Path::new(rings)] {
+        let given = || File::open(file).expect("readable");
+        let small = ["--size", "12x9", "-q"];
+        let name = file.to_str().expect("UTF-8");
+        done(&run(folder.path(), &[&["render", name, "-o", "file.png"], &small[..]].concat()));
+        let piped = [&["render", "-"], &small[..]].concat();
+        done(&whitted(folder.path(), &piped).stdin(given()).output().expect("runs"));
+        let read = |name: &str| fs::read(folder.path().join(name)).expect("written");
+        assert!(read("file.png") == read("stdin.png"), "{name}");
+        let inspected = whitted(folder.path(), &["inspect", "-"]).stdin(given()).output();
+        let inspected = inspected.expect("runs");
+        done(&inspected);
+        assert!(text(&inspected.stdout).contains("spheres"), "{}", text(&inspected.stdout));
+    }
+    for (given, said_of) in
+        [("", "standard input"), ("v\nfrom here", "standard input:2"), ("[", "standard input:1")]
+    {
+        let file = folder.path().join("bad");
+        fs::write(&file, given).expect("written");
+        let bad = whitted(folder.path(), &["render", "-"])
+            .stdin(File::open(&file).expect("readable"))
+            .output();
+        let bad = bad.expect("runs");
+        assert_eq!(bad.status.code(), Some(3), "{}", said(&bad));
+        assert!(said(&bad).contains(said_of), "{}", said(&bad));
+    }
+    let study = run(folder.path(), &["study", "-"]);
+    assert_eq!(study.status.code(), Some(2), "{}", said(&study));
+}
+
+/// Oracle: the undivided render.
+#[test]
+fn a_whole_of_parts_may_go_to_standard_output() {
+    let folder = folder();
+    let parts = ["top.png", "bottom.png"];
+    for (part, tile) in parts.into_iter().zip(["1/2", "2/2"]) {
+        done(&render(folder.path(), &["-o", part, "--tile", tile]));
+    }
+    done(&render(folder.path(), &["-o", "whole.png"]));
+    let merged = run(folder.path(), &[&["merge"], &parts[..], &["-o", "-"]].concat());
+    done(&merged);
+    assert!(merged.stdout == fs::read(folder.path().join("whole.png")).expect("written"));
+    let none = run(folder.path(), &["merge", parts[0], "-o", "-"]);
+    assert!(!none.status.success() && none.stdout.is_empty());
 }

@@ -115,7 +115,8 @@ pub(crate) struct MergeArgs {
     #[arg(value_name = "PART", required = true)]
     pub(crate) parts: Vec<PathBuf>,
 
-    /// Picture to write: .png, .exr (from .exr parts) or .ppm; the same bytes as those of an undivided render
+    /// Picture to write: .png, .exr (from .exr parts) or .ppm, - for a PNG on standard output; the same bytes as those
+    /// of an undivided render
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: PathBuf,
 
@@ -145,7 +146,7 @@ Examples:
   whitted inspect model.obj
   whitted inspect scene.toml --json")]
 pub(crate) struct InspectArgs {
-    /// File to inspect (.obj, .nff or .toml), or a built-in scene
+    /// File to inspect (.obj, .nff or .toml), a built-in scene, or - for a .toml or .nff from standard input
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
 

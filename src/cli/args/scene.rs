@@ -11,7 +11,7 @@ use super::super::parse::{parse_angle, parse_direction, parse_model, parse_objec
 #[derive(Debug, Args)]
 pub(crate) struct SceneArgs {
     /// Built-in scene (`whitted scenes` lists them), or a file: .toml, .nff, or .obj (a model, shown
-    /// on a floor under two lights)
+    /// on a floor under two lights); - is a .toml or .nff from standard input
     #[arg(default_value = "assignment")]
     pub(crate) scene: String,
 

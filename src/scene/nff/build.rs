@@ -15,6 +15,9 @@ use crate::{
     texture::Texture,
 };
 
+/// What a file may hold.
+pub(super) const ENTITIES: [&str; 8] = ["v", "b", "l", "f", "s", "c", "p", "pp"];
+
 /// The most corners of a polygon.
 const MOST_CORNERS: u32 = 10_000;
 

@@ -93,6 +93,15 @@ pub fn load_nff(path: &Path, rows: Option<u32>) -> Result<NffScene, NffError> {
     parse_nff(&shown, &text, rows)
 }
 
+/// Whether a text is meant as NFF: it begins with an entity, and not with a key of TOML.
+#[must_use]
+pub fn is_nff(text: &[u8]) -> bool {
+    let mut reader = read::Reader::new(text);
+    let is_entity = |word: &String| build::ENTITIES.contains(&word.as_str());
+    reader.keyword().is_some_and(|word| is_entity(&word))
+        && reader.keyword().is_none_or(|word| word != "=")
+}
+
 /// As [`load_nff`], from the text of the file `path`.
 ///
 /// # Errors

@@ -1,6 +1,11 @@
 //! From the bytes of a file to text: byte-order marks, UTF-16, names in old encodings, and files that are no text.
 
-use std::{borrow::Cow, fs::File, io::Read, path::Path};
+use std::{
+    borrow::Cow,
+    fs::File,
+    io::{self, Read},
+    path::Path,
+};
 
 use thiserror::Error;
 
@@ -13,7 +18,7 @@ pub const LARGEST_FILE: u64 = (1 << 32) - 1;
 pub enum TextError {
     /// The system refuses.
     #[error("cannot be read ({0})")]
-    Read(#[from] std::io::Error),
+    Read(#[from] io::Error),
     /// More bytes than are accepted.
     #[error("is larger than {most} bytes, the most that is read")]
     TooLarge {
@@ -40,8 +45,18 @@ pub fn read_limited(path: &Path, most: u64) -> Result<Vec<u8>, TextError> {
     }
     let mut bytes = Vec::new();
     // One more than it says, so that the end is found without growing.
-    bytes.try_reserve_exact(length as usize + 1).map_err(std::io::Error::from)?;
+    bytes.try_reserve_exact(length as usize + 1).map_err(io::Error::from)?;
     file.take(most + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most { Err(TextError::TooLarge { most }) } else { Ok(bytes) }
+}
+
+/// The bytes that come from standard input, at most `most`.
+///
+/// # Errors
+/// They cannot be read, or are more.
+pub fn read_stdin(most: u64) -> Result<Vec<u8>, TextError> {
+    let mut bytes = Vec::new();
+    io::stdin().take(most + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > most { Err(TextError::TooLarge { most }) } else { Ok(bytes) }
 }
 

@@ -8,7 +8,7 @@ pub mod lines;
 pub mod number;
 pub mod tokens;
 
-pub use decode::{TextError, decode, name_of, read_limited};
+pub use decode::{TextError, decode, name_of, read_limited, read_stdin};
 pub use lines::{Lines, line_ends};
 pub use number::{float, integer};
 pub use tokens::Tokens;
