@@ -59,7 +59,7 @@ impl Beyond {
 #[non_exhaustive]
 pub enum ImageTextureError {
     /// The bytes are no picture of a known kind, or a broken or absurdly large one.
-    #[error("texture `{name}` cannot be decoded: {source}")]
+    #[error("texture `{name}` cannot be decoded as PNG or JPEG: {source}")]
     Decode {
         /// What the texture is called.
         name: String,

@@ -204,7 +204,7 @@ pub(crate) struct StudyArgs {
     pub(crate) quick: bool,
 
     /// Width and height of the pictures in pixels [default: 600x600, or 100x100 with --quick]
-    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    #[arg(long, value_name = "WxH", value_parser = parse_size, allow_hyphen_values = true)]
     pub(crate) size: Option<[u32; 2]>,
 
     /// Timed repeats of each render, which takes turns with those that it is compared with; the median counts

@@ -38,7 +38,7 @@ pub(crate) struct RenderArgs {
 
     /// Width and height in pixels, such as 640x480; at most what fits into 16 GiB of memory (per tile, with --tile)
     /// [default: the scene's own]
-    #[arg(long, value_name = "WxH", value_parser = parse_sides, help_heading = "Picture")]
+    #[arg(long, value_name = "WxH", value_parser = parse_sides, allow_hyphen_values = true, help_heading = "Picture")]
     pub(crate) size: Option<[u32; 2]>,
 
     /// Anti-aliasing: none (one ray per pixel), grid:N (N x N rays per pixel), or adaptive[:ERROR[,MAX]] (rays where

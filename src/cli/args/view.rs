@@ -36,7 +36,7 @@ pub(crate) struct ViewArgs {
     pub(crate) seen: SceneArgs,
 
     /// Width and height of the window in pixels, such as 640x480 [default: the scene's own]
-    #[arg(long, value_name = "WxH", value_parser = parse_size, help_heading = "Picture")]
+    #[arg(long, value_name = "WxH", value_parser = parse_size, allow_hyphen_values = true, help_heading = "Picture")]
     pub(crate) size: Option<[u32; 2]>,
 
     /// Anti-aliasing of the last pass, as for `whitted render` [default: adaptive]

@@ -157,7 +157,7 @@ impl Walk<'_, '_> {
             Kind::File => match value.get_ref().as_str() {
                 Some(file) if !file.is_empty() => {
                     if !(self.exists)(file) {
-                        found.push((span, format!("file `{file}` is missing")));
+                        found.push((span, format!("there is no file `{file}`")));
                     }
                 }
                 _ => wrong("the name of a file"),

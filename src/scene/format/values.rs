@@ -114,8 +114,8 @@ fn is_in(x: f64, range: Range) -> bool {
 fn range_text(range: Range) -> &'static str {
     match range {
         Range::Any => "a finite number",
-        Range::Positive => "a positive number",
-        Range::AtLeastZero => "zero or a positive number",
+        Range::Positive => "a positive finite number",
+        Range::AtLeastZero => "zero or a positive finite number",
         Range::Angle => "an angle in degrees, between 0 and 180",
     }
 }
