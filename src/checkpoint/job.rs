@@ -256,16 +256,16 @@ impl Sink for Job<'_> {
     }
 
     fn put(&self, block: Block) {
+        let Block { number, place, colors, samples, account, outcome } = block;
         let mut state = self.state();
-        let place = block.place.minus(&self.label.place());
-        state.film.blit(&place, &block.colors, &block.samples);
-        state.outcome = block.outcome;
-        if !block.outcome.is_stopped {
-            state.accounts[block.number] = Some(block.account);
-            state.unsaved.push(block.number);
-        } else if !block.samples.contains(&0) {
-            state.rmse = Some(block.account.rmse(block.samples.len()));
+        state.outcome = outcome;
+        if !outcome.is_stopped {
+            state.accounts[number] = Some(account);
+            state.unsaved.push(number);
+        } else if !samples.contains(&0) {
+            state.rmse = Some(account.rmse(samples.len()));
         }
+        state.film.put(&place.minus(&self.label.place()), colors, samples);
     }
 
     fn wants_unfinished(&self) -> bool {

@@ -76,7 +76,7 @@ pub(crate) fn run(
     let job = Job::new((*label).clone(), places, path, stop, &report);
     find(&job, args, warnings)?;
     warnings.check()?;
-    reporter.begin(job.share_done());
+    reporter.begin(if job.has_checkpoint() { job.share_done() } else { 0.0 });
     let watcher = Watcher {
         job: &job,
         course: &course,

@@ -41,11 +41,7 @@ impl Sink for Whole<'_> {
     fn put(&self, block: Block) {
         let Block { number, place, colors, samples, account, outcome } = block;
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        if place == self.part {
-            state.film = Film::from_parts(place.width(), place.height(), colors, samples);
-        } else {
-            state.film.blit(&place.minus(&self.part), &colors, &samples);
-        }
+        state.film.put(&place.minus(&self.part), colors, samples);
         state.accounts.push((number, account));
         state.outcome = outcome;
     }
