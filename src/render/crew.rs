@@ -192,13 +192,23 @@ pub(super) fn trace_centers<S: Sampler + Send>(
         let untraced: Vec<&Area> =
             tiles.iter().filter(|tile| !lock(&centers).is_traced(tile)).collect();
         let pixels = || untraced.iter().flat_map(|tile| in_turn(tile));
-        scratch.places.clear();
-        scratch.samples.clear();
-        scratch.places.extend(pixels().map(|(x, y)| center(x, y)));
-        sampler.sample(&scratch.places, &mut scratch.samples);
+        let samples = sample_centers(sampler, scratch, pixels());
         let mut centers = lock(&centers);
-        for ((x, y), sample) in pixels().zip(&scratch.samples) {
+        for ((x, y), sample) in pixels().zip(samples) {
             *centers.at_mut(x, y) = *sample;
         }
     });
+}
+
+/// The samples at the centres of `pixels`.
+pub(super) fn sample_centers<'a, S: Sampler>(
+    sampler: &mut S,
+    scratch: &'a mut Scratch,
+    pixels: impl Iterator<Item = (i64, i64)>,
+) -> &'a [Sample] {
+    scratch.places.clear();
+    scratch.samples.clear();
+    scratch.places.extend(pixels.map(|(x, y)| center(x, y)));
+    sampler.sample(&scratch.places, &mut scratch.samples);
+    &scratch.samples
 }

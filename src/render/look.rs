@@ -31,7 +31,7 @@ pub(super) fn skips_cells(centers: &Plane<Sample>, x: i64, y: i64, contrast: f32
 pub(super) fn corrected(tile: &Area, centers: &Plane<Sample>) -> Vec<Rgb> {
     let mut colors = Vec::with_capacity(tile.len());
     for y in tile.y0..tile.y1 {
-        let [above, row, below] = [y - 1, y, y + 1].map(|y| centers.nearest_row(y));
+        let [above, row, below] = [y - 1, y, y + 1].map(|y| centers.row(y));
         colors.extend(centers.columns(tile).map(|place| {
             let center = row[place].color;
             let (west, east) = (row[place - 1].color, row[place + 1].color);

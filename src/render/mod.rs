@@ -261,14 +261,12 @@ pub fn render_blocks(
     let (view, mode) = (camera.view(width, height), (options.aa, options.goal));
     let area = Area::of(&part);
     let hints = is_adaptive.then(|| pool.install(|| Hints::of(scene, &view, &area)));
+    let is_one_ray = matches!(options.aa, AntiAliasing::None | AntiAliasing::Grid { side: 1 });
     // Telling highlights apart costs the adaptive mode a few rays about each, which narrow ones are worth.
-    let tells_highlights = match &hints {
-        Some(hints) => hints.has_glints,
-        None => options.aa != AntiAliasing::None,
-    };
+    let tells_highlights = hints.as_ref().map_or(!is_one_ray, |hints| hints.has_glints);
     let hints = hints.and_then(|hints| hints.pixels);
     // Single rays through the centres tell of each other, if pictures are not too regular.
-    let looks_into_pictures = options.aa != AntiAliasing::None && scene.has_pictures();
+    let looks_into_pictures = !is_one_ray && scene.has_pictures();
     let cone = looks_into_pictures.then(|| view.cone(options.aa.side_of_sample()));
     let at_once = places_at_once(scene);
     let block = |number: usize, place: &Tile, progress: &(dyn Fn(Progress) + Sync)| {

@@ -8,26 +8,43 @@ use rayon::prelude::*;
 use super::{
     Outcome, Picture,
     cell::{Cell, Judge},
-    crew::{Crew, Sampler, in_turn, lock, sum_of_tiles, trace_centers},
+    crew::{Crew, Sampler, in_turn, lock, sample_centers, sum_of_tiles},
     plane::{Area, Plane},
     window::Window,
 };
-use crate::aa::{Sample, detail::Detail, grid_places, pattern::Pattern, sobol::Sequence};
+use crate::{
+    aa::{detail::Detail, grid_places, pattern::Pattern, sobol::Sequence},
+    color::Rgb,
+};
 
 /// One ray through each centre.
 pub(super) fn centers<S: Sampler + Send>(crew: &Crew<S>, area: &Area) -> Picture {
-    let mut centers = Plane::new(*area, Sample::default());
-    trace_centers(crew, &mut centers, || false);
+    // Apart from each other, so that the colours are the picture's as they are.
+    let seen = Mutex::new((Plane::new(*area, Rgb::ZERO), Plane::new(*area, 0)));
+    let group = crew.tiles_at_once(1.0);
+    crew.run_groups(
+        area,
+        group,
+        true,
+        || false,
+        |sampler, scratch, tiles| {
+            let pixels = || tiles.iter().flat_map(in_turn);
+            let samples = sample_centers(sampler, scratch, pixels());
+            let (colors, signatures) = &mut *lock(&seen);
+            for ((x, y), sample) in pixels().zip(samples) {
+                *colors.at_mut(x, y) = sample.color;
+                *signatures.at_mut(x, y) = sample.signature;
+            }
+        },
+    );
+    let (colors, signatures) = seen.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let (colors, signatures) = (colors.into_values(), signatures.into_values());
     let squared_error = sum_of_tiles(area, |tile| {
-        let errors = Window::of_centers(tile, 1, &centers).center_errors();
+        let see = |place: usize| (colors[place], signatures[place], Detail::default());
+        let errors = Window::new((tile, 1), area, see).center_errors();
         errors.into_iter().map(f64::from).sum()
     });
-    Picture {
-        colors: centers.values().par_iter().map(|sample| sample.color).collect(),
-        samples: vec![1; area.len()],
-        squared_error,
-        outcome: Outcome::default(),
-    }
+    Picture { colors, samples: vec![1; area.len()], squared_error, outcome: Outcome::default() }
 }
 
 /// The squared error of a ray at any place of its pixel, as a multiple of that of a ray through the centre: measured at
@@ -102,8 +119,11 @@ fn even<S: Sampler + Send>(
     );
     let cells = cells.into_inner().unwrap_or_else(PoisonError::into_inner);
     let squared_error = sum_of_tiles(area, |tile| {
-        let see = |cell: &Cell| (cell.color, cell.signature, Detail::default());
-        let window = Window::new((tile, 1), &cells, see);
+        let see = |place: usize| {
+            let Cell { color, signature, .. } = cells.values()[place];
+            (color, signature, Detail::default())
+        };
+        let window = Window::new((tile, 1), area, see);
         if count == 1 {
             let errors = window.center_errors();
             return ANY_PLACE * errors.into_iter().map(f64::from).sum::<f64>();

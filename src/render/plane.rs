@@ -54,6 +54,17 @@ impl Area {
         (y - self.y0) as usize * self.width() + (x - self.x0) as usize
     }
 
+    /// The place where the row that is nearest to `y` begins.
+    pub(super) fn nearest_row(&self, y: i64) -> usize {
+        self.place_of(self.x0, y.clamp(self.y0, self.y1 - 1))
+    }
+
+    /// The place in a row that is nearest to `x`.
+    #[inline]
+    pub(super) fn nearest_column(&self, x: i64) -> usize {
+        (x.clamp(self.x0, self.x1 - 1) - self.x0) as usize
+    }
+
     /// The pixel at a place counted row by row.
     pub(super) fn pixel_at(&self, place: usize) -> (i64, i64) {
         let (row, column) = (place / self.width(), place % self.width());
@@ -160,21 +171,15 @@ impl<T> Plane<T> {
         self.at(x.clamp(self.area.x0, self.area.x1 - 1), y.clamp(self.area.y0, self.area.y1 - 1))
     }
 
-    /// The row that is nearest to `y`.
-    pub(super) fn nearest_row(&self, y: i64) -> &[T] {
-        let start = self.area.place_of(self.area.x0, y.clamp(self.area.y0, self.area.y1 - 1));
+    /// The row `y` of the area.
+    pub(super) fn row(&self, y: i64) -> &[T] {
+        let start = self.area.place_of(self.area.x0, y);
         &self.values[start..start + self.area.width()]
     }
 
     /// The places in a row of the columns of `part`, which is within the area.
     pub(super) fn columns(&self, part: &Area) -> std::ops::Range<usize> {
         (part.x0 - self.area.x0) as usize..(part.x1 - self.area.x0) as usize
-    }
-
-    /// The place in a row that is nearest to `x`.
-    #[inline]
-    pub(super) fn nearest_column(&self, x: i64) -> usize {
-        (x.clamp(self.area.x0, self.area.x1 - 1) - self.area.x0) as usize
     }
 
     pub(super) fn values(&self) -> &[T] {
@@ -280,7 +285,7 @@ impl<T: Copy> Plane<T> {
     pub(super) fn part(&self, part: &Area) -> Vec<T> {
         let mut values = Vec::with_capacity(part.len());
         for y in part.y0..part.y1 {
-            values.extend_from_slice(&self.nearest_row(y)[self.columns(part)]);
+            values.extend_from_slice(&self.row(y)[self.columns(part)]);
         }
         values
     }

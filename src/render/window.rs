@@ -95,23 +95,24 @@ fn lanes<T>(entries: &[T], start: usize) -> &[T] {
 }
 
 impl Window {
-    /// The window `margin` pixels about `tile` of a plane, from whose entries `see` makes colours, signatures and details.
-    pub(super) fn new<T>(
+    /// The window `margin` pixels about `tile` of `area`, of whose pixels, counted row by row, `see` tells colour,
+    /// signature and detail.
+    pub(super) fn new(
         (tile, margin): (&Area, usize),
-        plane: &Plane<T>,
-        see: impl Fn(&T) -> (Rgb, u32, Detail),
+        area: &Area,
+        see: impl Fn(usize) -> (Rgb, u32, Detail),
     ) -> Self {
         let around = tile.grown(margin as i64);
         let (width, len) = (around.width(), around.len() + LANES);
         let mut levels_of = [(); 3].map(|()| vec![0.0; len]);
         let (mut signatures, mut pictures) = (vec![0; len], None);
-        let columns: Vec<usize> = (around.x0..around.x1).map(|x| plane.nearest_column(x)).collect();
+        let columns: Vec<usize> = (around.x0..around.x1).map(|x| area.nearest_column(x)).collect();
         for (y, start) in (around.y0..around.y1).zip((0..).step_by(width)) {
-            let (row, places) = (plane.nearest_row(y), start..start + width);
+            let (row, places) = (area.nearest_row(y), start..start + width);
             let [red, green, blue] = levels_of.each_mut().map(|of| &mut of[places.clone()]);
             let signatures = &mut signatures[places];
             for (k, column) in columns.iter().enumerate() {
-                let (color, signature, detail) = see(&row[*column]);
+                let (color, signature, detail) = see(row + column);
                 let levels = levels(color);
                 (red[k], green[k], blue[k]) = (levels.x, levels.y, levels.z);
                 signatures[k] = signature;
@@ -125,8 +126,11 @@ impl Window {
 
     /// The window `margin` pixels about `tile` of traced centres.
     pub(super) fn of_centers(tile: &Area, margin: usize, centers: &Plane<Sample>) -> Self {
-        let see = |sample: &Sample| (sample.color, sample.signature, sample.detail);
-        Self::new((tile, margin), centers, see)
+        let samples = centers.values();
+        Self::new((tile, margin), centers.area(), |place| {
+            let Sample { color, signature, detail, .. } = samples[place];
+            (color, signature, detail)
+        })
     }
 
     /// What the centres say of the tile's pixels. Takes a margin of two pixels.
