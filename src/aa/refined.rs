@@ -16,7 +16,9 @@ const MOST_WITH_THIN: usize = 3;
 pub struct Sample {
     /// Linear light, each channel clamped to `[0, 1]`.
     pub color: Rgb,
-    /// What the ray and those that came of it met: equal for equal trees of surfaces, lights and pattern cells.
+    /// A hash of what the ray and those that came of it met: surfaces and their sides, cells of patterns, which lights
+    /// were seen through what, and the inner parts of highlights if wanted. Samples with the same signature differ by
+    /// what varies smoothly.
     pub signature: u32,
     /// A number of the cells of patterns that show, directly or by what is reflected and transmitted; 0 for none.
     pub cell: u32,

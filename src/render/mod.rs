@@ -274,7 +274,6 @@ pub fn render_blocks(
         let new_sampler = || Worker {
             tracer: Tracer::new(scene, depth, cone, tells_highlights),
             view,
-            traced: Vec::new(),
             at_once,
             hints: hints.as_ref(),
             counts: &rays,

@@ -8,9 +8,8 @@ use super::{RayCounts, crew::Sampler, hints::Hint, plane::Plane};
 use crate::{
     aa::Sample,
     camera::View,
-    color::Rgb,
     scene::Scene,
-    trace::{self, BATCH, ENOUGH, Tracer},
+    trace::{BATCH, ENOUGH, Tracer},
 };
 
 /// More places at once would gain little, and be long without a look at the clock.
@@ -30,7 +29,6 @@ pub(super) fn places_at_once(scene: &Scene) -> usize {
 pub(super) struct Worker<'a> {
     pub(super) tracer: Tracer<'a>,
     pub(super) view: View,
-    pub(super) traced: Vec<trace::Sample>,
     pub(super) at_once: usize,
     /// What is known to be in pixels, if there is anything.
     pub(super) hints: Option<&'a Plane<Hint>>,
@@ -55,14 +53,7 @@ impl Sampler for Worker<'_> {
         let at_once = if self.at_once > BATCH { places.len().max(1) } else { BATCH };
         for some in places.chunks(at_once) {
             let dirs = some.iter().map(|place| self.view.direction(*place));
-            self.tracer.trace(self.view.eye(), dirs, &mut self.traced);
-            samples.extend(self.traced.iter().map(|traced| Sample {
-                color: traced.color.max(Rgb::ZERO).min(Rgb::ONE),
-                signature: traced.signature,
-                cell: traced.cell,
-                detail: traced.detail,
-                rays: traced.rays,
-            }));
+            self.tracer.trace(self.view.eye(), dirs, samples);
         }
     }
 }

@@ -21,7 +21,7 @@ mod wavefront;
 use glam::{DVec2, DVec3};
 
 use crate::{
-    aa::detail::Detail,
+    aa::{Sample, detail::Detail},
     accel::Work,
     camera::Cone,
     color::Rgb,
@@ -50,23 +50,6 @@ pub(crate) const ENOUGH: usize = 1 << 10;
 
 /// The least weight in a sample of a hit whose cell counts.
 const WEIGHT_OF_CELLS: f32 = 0.25;
-
-/// What one place on the film shows.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample {
-    /// The light that comes back, linear and not clamped.
-    pub color: Rgb,
-    /// A hash of all that the ray tree met: surfaces and their sides, cells of patterns, which lights were seen through
-    /// what, and the inner parts of highlights if wanted. Two samples with the same signature differ by what varies
-    /// smoothly.
-    pub signature: u32,
-    /// A number of the cells of patterns that it shows, itself or by what it reflects and transmits; 0 for none.
-    pub cell: u32,
-    /// What it shows of pictures that are finer than what its ray stands for.
-    pub detail: Detail,
-    /// How many rays it took, those towards lights included.
-    pub rays: u32,
-}
 
 /// What a ray on the work list is for.
 #[derive(Clone, Copy, Debug)]
@@ -121,6 +104,12 @@ impl Gathered {
         self.rays += 1;
         self.color.add(light);
         self.signature = self.signature.wrapping_add(signature);
+    }
+
+    fn sample(&self) -> Sample {
+        let Self { color, signature, cell, detail, rays } = *self;
+        let color = color.value().max(Rgb::ZERO).min(Rgb::ONE);
+        Sample { color, signature, cell, detail, rays }
     }
 
     /// Adds a hit that shows its own colour.
@@ -201,7 +190,7 @@ impl<'a> Tracer<'a> {
         self.counts
     }
 
-    /// What camera rays from `eye` along `dirs`, in the scene's own coordinates, show; `samples` gets one for each.
+    /// Puts what camera rays from `eye` along `dirs`, in the scene's own coordinates, show behind what `samples` holds.
     pub(crate) fn trace(
         &mut self,
         eye: DVec3,
@@ -231,15 +220,7 @@ impl<'a> Tracer<'a> {
         if self.waits {
             scene.accel().run(Finish(self));
         }
-        samples.clear();
-        let sample = |g: &Gathered| Sample {
-            color: g.color.value(),
-            signature: g.signature,
-            cell: g.cell,
-            detail: g.detail,
-            rays: g.rays,
-        };
-        samples.extend(self.gathered.iter().map(sample));
+        samples.extend(self.gathered.iter().map(Gathered::sample));
     }
 
     /// Takes up to [`BATCH`] rays of one level from the end of the list; returns whether there were any.

@@ -270,7 +270,7 @@ mod tests {
     use crate::{
         math::random::SplitMix64,
         scene::{LoadOptions, load},
-        trace::{BATCH, Sample, Tracer},
+        trace::{BATCH, Tracer},
     };
 
     /// Oracle: the same rays in lists so short that no hit waits.
@@ -287,10 +287,9 @@ mod tests {
             let trace = |at_once: usize, most: usize| {
                 let mut tracer = Tracer::new(&scene, scene.depth(), None, tells_highlights);
                 tracer.waiting.most = most;
-                let (mut all, mut some): (Vec<Sample>, _) = (Vec::new(), Vec::new());
+                let mut all = Vec::new();
                 for dirs in dirs.chunks(at_once) {
-                    tracer.trace(view.eye(), dirs.iter().copied(), &mut some);
-                    all.extend_from_slice(&some);
+                    tracer.trace(view.eye(), dirs.iter().copied(), &mut all);
                 }
                 let waited = tracer.waiting.together.is_some();
                 (waited, all, tracer.counts())
