@@ -2,7 +2,7 @@
 //!
 //! The recursion is a work list of rays, each with the weight of its answer in its sample and its level, so the call
 //! stack stays flat however deep it goes. Rays are taken from the end of the list in batches of one level: those of a
-//! batch are traced together, then lit together light by light (module `lit`), because rays that start or end in one
+//! batch are traced together, then lit together light by light (modules `shade` and `lit`), because rays that start or end in one
 //! point are cheaper together. Hits that are far from each other wait for others to be lit with (module `wavefront`).
 //! What a sample becomes does not depend on the batches: its parts are summed in fixed point (module `sum`), where order
 //! does not matter.
@@ -13,120 +13,36 @@ mod footprint;
 mod lit;
 mod meet;
 mod onward;
+mod order;
+mod shade;
 mod shadow;
 mod signature;
 mod sum;
+mod task;
 mod wavefront;
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use crate::{
-    aa::{Sample, detail::Detail},
+    aa::Sample,
     accel::Work,
     camera::Cone,
-    color::Rgb,
     geometry::{
         Ray,
         lanes::{HitLanes, LANES, MetLanes, RayLanes, Vectors, lanes},
     },
-    light::Light,
-    material::Material,
     scene::Scene,
 };
 pub use counts::RayCounts;
-use lit::{Lit, Shown};
-use signature::{Branch, Path};
-use sum::Sum;
+use lit::Lit;
+use task::{Gathered, Task};
 use wavefront::Wavefront;
 
 /// How many rays are traced together.
 pub const BATCH: usize = LANES;
 
-/// Hits of so few primitives are lit at once.
-const FEW: usize = 4;
-
 /// Of fewer samples than this, hits that wait would be too few to be near each other.
 pub(crate) const ENOUGH: usize = 1 << 10;
-
-/// The least weight in a sample of a hit whose cell counts.
-const WEIGHT_OF_CELLS: f32 = 0.25;
-
-/// What a ray on the work list is for.
-#[derive(Clone, Copy, Debug)]
-struct Task {
-    /// What its answer counts in the sample.
-    weight: Rgb,
-    /// Camera rays have level 1.
-    level: u32,
-    /// The length of the path from the camera so far.
-    way: f32,
-    /// The side of the square that it stands for, by length of the path; 0 for camera rays, whose direction tells.
-    width: f32,
-    /// Which of the samples asked for it belongs to.
-    sample: u32,
-    path: Path,
-}
-
-impl Task {
-    /// What the camera ray of a sample is for.
-    #[inline(always)]
-    fn camera(sample: u32) -> Self {
-        Self { weight: Rgb::ONE, level: 1, way: 0.0, width: 0.0, sample, path: Path::START }
-    }
-
-    /// What a ray is for that comes from where this one has gone so far, if its answer counts `weight` in this one's.
-    #[inline(always)]
-    fn child(&self, (gone, width): (f64, f32), weight: Rgb, branch: Branch) -> Self {
-        Self {
-            weight: self.weight * weight,
-            level: self.level + 1,
-            way: self.way + gone as f32,
-            width,
-            sample: self.sample,
-            path: self.path.branch(branch),
-        }
-    }
-}
-
-/// What a sample gathers.
-#[derive(Clone, Copy, Debug, Default)]
-struct Gathered {
-    color: Sum,
-    signature: u32,
-    cell: u32,
-    detail: Detail,
-    rays: u32,
-}
-
-impl Gathered {
-    #[inline(always)]
-    fn add(&mut self, light: Rgb, signature: u32) {
-        self.rays += 1;
-        self.color.add(light);
-        self.signature = self.signature.wrapping_add(signature);
-    }
-
-    fn sample(&self) -> Sample {
-        let Self { color, signature, cell, detail, rays } = *self;
-        let color = color.value().max(Rgb::ZERO).min(Rgb::ONE);
-        Sample { color, signature, cell, detail, rays }
-    }
-
-    /// Adds a hit that shows its own colour.
-    #[inline(always)]
-    fn add_hit(&mut self, task: &Task, shown: &Shown) {
-        self.add(task.weight * shown.light, shown.signature);
-        if shown.cell != 0 && task.weight.max_element() >= WEIGHT_OF_CELLS {
-            self.cell = self.cell.wrapping_add(task.path.cell(shown.cell).signature());
-        }
-        if shown.detail != Detail::default() {
-            self.detail = self.detail.and(shown.detail.lit(task.weight).squared_error());
-            if task.level == 1 && shown.detail.is_whole() {
-                self.detail = self.detail.whole();
-            }
-        }
-    }
-}
 
 /// The rays that are traced together, a lane for each, and what they are for.
 #[derive(Debug)]
@@ -285,96 +201,7 @@ impl<'a> Tracer<'a> {
             open &= !same;
             self.meet(primitive, same, is_camera);
         }
-        if self.waits && primitives > FEW && self.is_scattered() {
-            self.wait();
-            return;
-        }
-        self.light();
-        self.show();
-    }
-
-    /// Whether the hits to be lit are so far from each other that some light sees more primitives between them than one
-    /// each way, if these fill its view.
-    #[inline(always)]
-    fn is_scattered(&self) -> bool {
-        let [min, max] = self.lit.starts();
-        let (middle, size) = (0.5 * (min + max), (max - min).max_element());
-        let across = size * (self.scene.primitive_count() as f64).cbrt();
-        let is_near = |light: &Light| across > (light.position - middle).length();
-        self.scene.lights().iter().any(is_near)
-    }
-
-    /// Adds what the lights give to the hits that face them.
-    #[inline(always)]
-    fn light(&mut self) {
-        let (scene, batch) = (self.scene, &*self.batch);
-        for light in scene.lights() {
-            let asked = self.lit.face(light, &batch.met.dir);
-            self.counts.shadow += u64::from(asked.count_ones());
-            for k in lanes(asked) {
-                self.gathered[batch.tasks[k].sample as usize].rays += 1;
-            }
-            if asked != 0 {
-                self.lit.add(scene, light, &batch.hits, asked);
-            }
-        }
-    }
-
-    /// Gives the colours of the lit hits to their samples.
-    #[inline(always)]
-    fn show(&mut self) {
-        for k in lanes(self.lit.lanes()) {
-            let task = &self.batch.tasks[k];
-            let material = self.scene.material(self.batch.hits.primitive[k]);
-            let shown = self.lit.show(k, material, self.uv_across(k, material));
-            self.gathered[task.sample as usize].add_hit(task, &shown);
-        }
-    }
-
-    /// How much the surface coordinates change across what the ray of a lane stands for, squared; `None` if
-    /// nobody asks for it.
-    #[inline(always)]
-    fn uv_across(&self, k: usize, material: &Material) -> Option<DVec2> {
-        if self.cone.is_none() || !material.texture.needs_uv() {
-            return None;
-        }
-        let (batch, shape) = (&*self.batch, self.scene.shape(self.batch.hits.primitive[k]));
-        let (task, dir) = (&batch.tasks[k], batch.met.dir.get(k));
-        let width = f64::from(self.width_of(task, dir)) * (f64::from(task.way) + batch.hits.t[k]);
-        let normal = self.lit.surfaces.facing.get(k);
-        Some(footprint::on_surface(width, dir, normal, shape.uv_gradients()))
-    }
-
-    /// The side of what a ray along `dir` stands for at distance 1 from the camera, its way unfolded.
-    #[inline(always)]
-    fn width_of(&self, task: &Task, dir: DVec3) -> f32 {
-        match &self.cone {
-            Some(cone) if task.level == 1 => cone.width_along(dir),
-            _ => task.width,
-        }
-    }
-
-    /// Keeps the lit hits, and the rays that they ask for, until there are more.
-    #[inline(always)]
-    fn wait(&mut self) {
-        let (scene, batch) = (self.scene, &*self.batch);
-        let (first, all) = (self.waiting.len(), self.lit.lanes());
-        for k in lanes(all) {
-            let hit = (batch.hits.primitive[k], batch.hits.face[k]);
-            let material = scene.material(hit.0);
-            let pigment = self.lit.pigment(k, material, self.uv_across(k, material));
-            self.waiting.push(&self.lit, k, &batch.tasks[k], hit, pigment);
-        }
-        for (number, light) in scene.lights().iter().enumerate() {
-            let asked = self.lit.face(light, &batch.met.dir);
-            self.counts.shadow += u64::from(asked.count_ones());
-            for k in lanes(asked) {
-                self.gathered[batch.tasks[k].sample as usize].rays += 1;
-                let before = (all & ((1 << k) - 1)).count_ones() as usize;
-                let wish = self.lit.wish(k);
-                self.waiting.ask(number, first + before, self.lit.toward.get(k), wish);
-            }
-        }
+        self.shade(primitives);
     }
 }
 

@@ -3,7 +3,7 @@
 //! Where many small things are in sight, neighbours in the picture are far from each other in space, and their rays
 //! towards a light share no nodes. Among thousands of hits, though, each has others that the light sees in nearly the
 //! same direction. So hits are kept, their rays towards each light are brought into the order of a Hilbert curve over
-//! the directions from that light, and neighbours on it are traced together.
+//! the directions from that light (module `order`), and neighbours on it are traced together.
 //!
 //! What becomes of a hit is, to the bit, what it would be at once.
 //!
@@ -13,10 +13,11 @@
 use glam::DVec3;
 
 use super::{
-    Gathered, Task,
     lit::{Lit, Pigment, Wish, shown},
+    order::{Bearing, put_in_order},
     shadow::{self, Passed},
     signature::Path,
+    task::{Gathered, Task},
 };
 use crate::{
     color::Rgb,
@@ -27,9 +28,6 @@ use crate::{
 
 /// About so much memory do hits that wait and their rays take at most.
 const MOST_BYTES: usize = 24 << 20;
-
-/// Steps of the curve, each of which tells one more bit of both coordinates.
-const STEPS: u32 = 10;
 
 /// A hit and the light that it got so far.
 #[derive(Debug)]
@@ -53,9 +51,8 @@ struct Ask {
     /// Which hit.
     hit: u32,
     wish: Wish,
-    /// Which side of a cube about the light it comes through, and where, as slopes.
-    side: u8,
-    slopes: [f32; 2],
+    /// Where it comes from, seen from the light.
+    from: Bearing,
 }
 
 /// Hits, and the rays from them to each light.
@@ -142,9 +139,8 @@ impl Wavefront {
         if self.asks.len() <= light {
             self.asks.resize_with(light + 1, Vec::new);
         }
-        let (side, slopes) = through_cube(-toward);
         self.bytes += size_of::<Ask>();
-        self.asks[light].push(Ask { hit: hit as u32, wish, side, slopes });
+        self.asks[light].push(Ask { hit: hit as u32, wish, from: Bearing::of(-toward) });
     }
 
     /// Lights all hits that wait, and gives what they show to their samples.
@@ -153,7 +149,7 @@ impl Wavefront {
         for (number, light) in scene.lights().iter().enumerate() {
             let Some(asks) = self.asks.get_mut(number) else { break };
             let (asks, mut order) = (std::mem::take(asks), std::mem::take(&mut self.order));
-            put_in_order(&asks, &mut order);
+            put_in_order(&asks, |ask| &ask.from, &mut order);
             for some in order.chunks(LANES) {
                 self.light(scene, light, &asks, some);
             }
@@ -201,74 +197,12 @@ impl Wavefront {
     }
 }
 
-/// The side of a cube about the origin through which a direction leads, and where, as slopes.
-#[inline(always)]
-fn through_cube(dir: DVec3) -> (u8, [f32; 2]) {
-    let size = dir.abs();
-    let (axis, along, others) = if size.x >= size.y && size.x >= size.z {
-        (0, dir.x, [dir.y, dir.z])
-    } else if size.y >= size.z {
-        (1, dir.y, [dir.x, dir.z])
-    } else {
-        (2, dir.z, [dir.x, dir.y])
-    };
-    (2 * axis + u8::from(along < 0.0), others.map(|other| (other / along.abs()) as f32))
-}
-
-/// Puts the numbers of the rays `asks` in the order of Hilbert curves over the parts of the cube's sides through which
-/// they come; each is in the lower half of an entry.
-#[inline(always)]
-fn put_in_order(asks: &[Ask], order: &mut Vec<u64>) {
-    let mut ranges = [[[f32::INFINITY, f32::NEG_INFINITY]; 2]; 6];
-    for ask in asks {
-        for (range, slope) in ranges[usize::from(ask.side)].iter_mut().zip(ask.slopes) {
-            *range = [range[0].min(slope), range[1].max(slope)];
-        }
-    }
-    let last = ((1 << STEPS) - 1) as f32;
-    let scales = ranges.map(|side| side.map(|[from, to]| last / (to - from)));
-    order.clear();
-    for (group, some) in asks.chunks(LANES).enumerate() {
-        let mut cells = [[0; LANES]; 2];
-        for (k, ask) in some.iter().enumerate() {
-            let side = usize::from(ask.side);
-            // Where all slopes are the same, the scale is infinite and the product no number, which counts as 0.
-            let cell =
-                |axis: usize| (ask.slopes[axis] - ranges[side][axis][0]) * scales[side][axis];
-            (cells[0][k], cells[1][k]) = (cell(0) as u32, cell(1) as u32);
-        }
-        let along = along_curve(&cells);
-        order.extend(some.iter().zip(along).enumerate().map(|(k, (ask, along))| {
-            let place = u64::from(ask.side) << (2 * STEPS) | u64::from(along);
-            place << 32 | (group * LANES + k) as u64
-        }));
-    }
-    order.sort_unstable();
-}
-
-/// The places of cells, by column and row, on the Hilbert curve through a square of 2^[`STEPS`] cells a side.
-///
-/// Source: Warren, "Hacker's Delight" (2nd edition, 2012), figure 16-8.
-#[inline(always)]
-fn along_curve([x, y]: &[[u32; LANES]; 2]) -> [u32; LANES] {
-    let (mut state, mut place) = ([0; LANES], [0; LANES]);
-    for step in (0..STEPS).rev() {
-        for k in 0..LANES {
-            let row = (4 * state[k]) | (2 * (x[k] >> step & 1)) | (y[k] >> step & 1);
-            place[k] = place[k] << 2 | 0x361e_9cb4 >> (2 * row) & 3;
-            state[k] = 0x8fe6_5831 >> (2 * row) & 3;
-        }
-    }
-    place
-}
-
 #[cfg(test)]
 mod tests {
     use glam::DVec2;
 
     use super::*;
     use crate::{
-        math::random::SplitMix64,
         scene::{LoadOptions, load},
         trace::{BATCH, Tracer},
     };
@@ -303,54 +237,6 @@ mod tests {
                 let differ = waiting.iter().zip(&at_once).filter(|(a, b)| a != b).count();
                 assert_eq!((waiting.len(), differ), (at_once.len(), 0), "{most}");
             }
-        }
-    }
-
-    /// Oracle: the definition. The curve visits each cell once, and goes on to one beside it.
-    #[test]
-    fn the_curve_goes_from_cell_to_cell() {
-        let side = 1 << STEPS;
-        let mut cells = vec![None; (side * side) as usize];
-        for y in 0..side {
-            for x in (0..side).step_by(LANES) {
-                let row = std::array::from_fn(|k| x + k as u32);
-                for (k, place) in along_curve(&[row, [y; LANES]]).into_iter().enumerate() {
-                    assert_eq!(cells[place as usize].replace((row[k], y)), None);
-                }
-            }
-        }
-        let cells: Vec<(u32, u32)> = cells.into_iter().map(|cell| cell.expect("visited")).collect();
-        let is_step = |pair: &[(u32, u32)]| {
-            pair[0].0.abs_diff(pair[1].0) + pair[0].1.abs_diff(pair[1].1) == 1
-        };
-        assert!(cells.windows(2).all(is_step));
-    }
-
-    /// Oracle: each number once, and each side of the cube in one piece; also of rays that go nowhere, or all the same
-    /// way.
-    #[test]
-    fn the_order_has_each_ray_once() {
-        let mut random = SplitMix64::new(3);
-        let mut vector =
-            || DVec3::from_array(std::array::from_fn(|_| 2.0 * random.uniform() - 1.0));
-        let ask = |dir: DVec3| {
-            let (side, slopes) = through_cube(dir);
-            let wish = Wish { scattered: 0.0, shine: 0.0, is_inner: false };
-            Ask { hit: 0, wish, side, slopes }
-        };
-        let any: Vec<Ask> = (0..1000).map(|_| ask(vector())).collect();
-        let one_way = vec![ask(DVec3::new(1.0, 2.0, 3.0)); 100];
-        let with_nowhere: Vec<Ask> =
-            any.iter().copied().chain([ask(DVec3::ZERO), ask(DVec3::NAN)]).collect();
-        for (asks, sides) in [(any, 6), (one_way, 1), (with_nowhere, 6)] {
-            let mut order = Vec::new();
-            put_in_order(&asks, &mut order);
-            let mut numbers: Vec<usize> = order.iter().map(|x| *x as u32 as usize).collect();
-            let mut pieces: Vec<u8> = numbers.iter().map(|k| asks[*k].side).collect();
-            pieces.dedup();
-            assert_eq!(pieces.len(), sides);
-            numbers.sort_unstable();
-            assert!(numbers.into_iter().eq(0..asks.len()));
         }
     }
 }
