@@ -74,6 +74,20 @@ impl<W: Work> Kernel for Run<W> {
     }
 }
 
+/// The memory of these is needed soon.
+struct Prefetch<I>(I);
+
+impl<'t, T: 't, I: Iterator<Item = &'t T>> Kernel for Prefetch<I> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        for thing in self.0 {
+            simd.prefetch(thing);
+        }
+    }
+}
+
 /// The primitives of a scene, arranged so that a ray finds those it meets without trying all.
 #[derive(Debug)]
 pub struct Accel {
@@ -217,6 +231,11 @@ impl Accel {
     #[inline(always)]
     pub(crate) fn run<W: Work>(&self, work: W) {
         self.dispatch(Run(work));
+    }
+
+    /// Asks for the memory of what is needed soon.
+    pub(crate) fn prefetch<'t, T: 't>(&self, things: impl Iterator<Item = &'t T>) {
+        self.dispatch(Prefetch(things));
     }
 
     /// The nearest hit with `0 < t < end`; of equal ones, that of the lowest primitive.

@@ -137,8 +137,8 @@ fn is_seen(scene: &Scene, view: &View, primitive: u32, point: DVec3, light: &Lig
     hit.filter(|hit| hit.primitive == primitive).is_some_and(|hit| {
         let surface = scene.surface(&ray, &hit);
         let ray = surface.leave(&hit, light.position - surface.beside(false), false);
-        let is_opaque = |primitive| !scene.material(primitive).is_transmissive();
-        !scene.accel().is_blocked(&ray, 1.0, is_opaque, |_, _| ControlFlow::Continue(()))
+        let opaque = |primitive| scene.is_opaque(primitive);
+        !scene.accel().is_blocked(&ray, 1.0, opaque, |_, _| ControlFlow::Continue(()))
     })
 }
 

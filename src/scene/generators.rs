@@ -137,6 +137,7 @@ mod tests {
         for (sphere, primitive) in stress_spheres(100).zip(1..) {
             let material = scene.material(primitive);
             assert_eq!(material.is_transmissive(), sphere.material == 17, "{primitive}");
+            assert_eq!(scene.is_opaque(primitive), sphere.material != 17, "{primitive}");
             assert_eq!(material.reflection == 0.8, sphere.material == 16, "{primitive}");
         }
     }

@@ -72,6 +72,9 @@ pub struct Scene {
     lights: Vec<Light>,
     materials: Vec<Material>,
     material_of: Vec<u32>,
+    /// A bit for each primitive: whether nothing shines through. Rays towards lights ask it of any, and bits stay in the
+    /// caches.
+    opaque: Vec<u64>,
     meshes: Vec<Arc<Mesh>>,
     /// Of all meshes; made when they are asked for.
     pieces: OnceLock<Vec<Rod>>,
@@ -126,6 +129,7 @@ impl Scene {
             material_of.extend(of_faces);
             meshes.push(mesh);
         }
+        let opaque = bits(&material_of, |material| !materials[material as usize].is_transmissive());
         let building = Instant::now();
         let accel = Accel::build(shapes);
         Ok(Self {
@@ -143,6 +147,7 @@ impl Scene {
                 .collect(),
             materials: materials.into_iter().map(|m| m.mapped(&map)).collect(),
             material_of,
+            opaque,
             meshes,
             pieces: OnceLock::new(),
             accel,
@@ -276,7 +281,22 @@ impl Scene {
         self.materials.iter().any(|material| material.texture.needs_uv())
     }
 
+    /// Whether nothing shines through a primitive.
+    #[inline(always)]
+    pub(crate) fn is_opaque(&self, primitive: u32) -> bool {
+        self.opaque[primitive as usize / 64] >> (primitive % 64) & 1 != 0
+    }
+
     pub(crate) fn material(&self, primitive: u32) -> &Material {
         &self.materials[self.material_of[primitive as usize] as usize]
     }
+}
+
+/// A bit for each of `numbers`: whether it `is_one` of some.
+fn bits(numbers: &[u32], is_one: impl Fn(u32) -> bool) -> Vec<u64> {
+    let bit = |(k, number): (usize, &u32)| u64::from(is_one(*number)) << k;
+    numbers
+        .chunks(64)
+        .map(|some| some.iter().enumerate().map(bit).fold(0, |all, bit| all | bit))
+        .collect()
 }

@@ -184,6 +184,9 @@ impl<'a> Tracer<'a> {
         }
         batch.met.t = batch.hits.t;
         let hit = used & batch.hits.found();
+        // Each of many would be waited for by itself.
+        let hits = &batch.hits;
+        scene.accel().prefetch(lanes(hit).map(|k| scene.shape(hits.primitive[k])));
         if is_camera {
             self.counts.camera_hit += u64::from(hit.count_ones());
         }

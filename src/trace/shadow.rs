@@ -50,7 +50,7 @@ pub(super) fn cast(scene: &Scene, rays: &RayLanes, target: DVec3, passed: &mut P
     let Passed { crossings, lanes } = passed;
     crossings.clear();
     *lanes = 0;
-    let opaque = |primitive| !scene.material(primitive).is_transmissive();
+    let opaque = |primitive| scene.is_opaque(primitive);
     let visit = |lane: usize, primitive, crossing: Crossing| {
         *lanes |= 1 << lane;
         crossings.push((lane, crossing.t, primitive));

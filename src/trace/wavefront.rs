@@ -150,7 +150,10 @@ impl Wavefront {
             let Some(asks) = self.asks.get_mut(number) else { break };
             let (asks, mut order) = (std::mem::take(asks), std::mem::take(&mut self.order));
             put_in_order(&asks, |ask| &ask.from, &mut order);
-            for some in order.chunks(LANES) {
+            let mut chunks = order.chunks(LANES).peekable();
+            while let Some(some) = chunks.next() {
+                let next = chunks.peek().into_iter().flat_map(|next| next.iter());
+                scene.accel().prefetch(next.map(|entry| asking(&self.hits, &asks, *entry)));
                 self.light(scene, light, &asks, some);
             }
             (self.order, self.asks[number]) = (order, asks);
@@ -171,8 +174,8 @@ impl Wavefront {
         let Together { dir, hits, surfaces } =
             &mut **self.together.get_or_insert_with(|| Box::new(Together::NONE));
         let used = u64::MAX >> (LANES - order.len());
-        for (k, number) in order.iter().enumerate() {
-            let hit = &self.hits[asks[*number as u32 as usize].hit as usize];
+        for (k, entry) in order.iter().enumerate() {
+            let hit = asking(&self.hits, asks, *entry);
             (hits.primitive[k], hits.face[k]) = (hit.primitive, hit.face);
             surfaces.start.set(k, hit.start);
             surfaces.local.set(k, hit.local);
@@ -195,6 +198,12 @@ impl Wavefront {
             hit.specular += arriving * wish.shine;
         }
     }
+}
+
+/// The hit that asks for a light by the ray that an entry of the order is of.
+#[inline(always)]
+fn asking<'h>(hits: &'h [Waiting], asks: &[Ask], entry: u64) -> &'h Waiting {
+    &hits[asks[entry as u32 as usize].hit as usize]
 }
 
 #[cfg(test)]
