@@ -76,8 +76,11 @@ const SHARES: usize = 4;
 pub(super) struct Crew<'a, S> {
     new_sampler: &'a (dyn Fn() -> S + Sync),
     pub(super) meter: &'a Meter<'a>,
-    /// As [`Sampler::at_once`].
+    /// Those that have nothing to do.
+    idle: Mutex<Vec<(S, Scratch)>>,
+    /// As [`Sampler::at_once`] and [`Sampler::has_hints`].
     at_once: usize,
+    pub(super) has_hints: bool,
 }
 
 /// Lists that a worker keeps from tile to tile.
@@ -89,12 +92,10 @@ pub(super) struct Scratch {
 
 impl<'a, S: Sampler + Send> Crew<'a, S> {
     pub(super) fn new(new_sampler: &'a (dyn Fn() -> S + Sync), meter: &'a Meter<'a>) -> Self {
-        Self { new_sampler, meter, at_once: new_sampler().at_once() }
-    }
-
-    /// Whether anything is known to be in any pixel, as [`Sampler::has_hints`].
-    pub(super) fn has_hints(&self) -> bool {
-        (self.new_sampler)().has_hints()
+        let first = new_sampler();
+        let (at_once, has_hints) = (first.at_once(), first.has_hints());
+        let idle = Mutex::new(vec![(first, Scratch::default())]);
+        Self { new_sampler, meter, idle, at_once, has_hints }
     }
 
     /// How many tiles are best sampled together, if a pixel gets so many samples.
@@ -120,19 +121,17 @@ impl<'a, S: Sampler + Send> Crew<'a, S> {
         stop: impl Fn() -> bool + Sync,
         work: impl Fn(&mut S, &mut Scratch, &[Area]) + Sync,
     ) {
-        let idle: Mutex<Vec<(S, Scratch)>> = Mutex::new(Vec::new());
-        let idle = || lock(&idle);
         let tiles = area.tiles();
         let fair = tiles.len() / (SHARES * rayon::current_num_threads());
         tiles.par_chunks(count.min(fair).max(1)).with_max_len(1).for_each(|tiles| {
             if stop() {
                 return;
             }
-            let worker = idle().pop();
+            let worker = lock(&self.idle).pop();
             let (mut sampler, mut scratch) =
                 worker.unwrap_or_else(|| ((self.new_sampler)(), Scratch::default()));
             work(&mut sampler, &mut scratch, tiles);
-            idle().push((sampler, scratch));
+            lock(&self.idle).push((sampler, scratch));
             if counted {
                 self.meter.add(tiles.iter().map(|tile| tile.len() as u64).sum());
             }

@@ -66,7 +66,7 @@ impl Known {
         least: Threshold,
     ) {
         let area = *self.pixels.area();
-        let has_hints = crew.has_hints();
+        let has_hints = crew.has_hints;
         let of_one_color = Mutex::new(Vec::new());
         let known = Mutex::new(&mut *self);
         crew.run(&area, |sampler, tile| {

@@ -9,7 +9,7 @@ use crate::film::Tile;
 pub(super) struct Watch<'a> {
     pub(super) sink: &'a dyn Sink,
     pub(super) place: &'a Tile,
-    /// The rays of the workers that are done.
+    /// The rays of all workers.
     pub(super) rays: &'a Mutex<RayCounts>,
 }
 

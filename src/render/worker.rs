@@ -1,10 +1,15 @@
 //! Rays through the pixels of a scene's picture.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 
 use glam::DVec2;
 
-use super::{RayCounts, crew::Sampler, hints::Hint, plane::Plane};
+use super::{
+    RayCounts,
+    crew::{Sampler, lock},
+    hints::Hint,
+    plane::Plane,
+};
 use crate::{
     aa::Sample,
     camera::View,
@@ -25,7 +30,7 @@ pub(super) fn places_at_once(scene: &Scene) -> usize {
     if count < ENOUGH { BATCH } else { count }
 }
 
-/// Samples a scene through its camera; what it traced is added to `counts` in the end.
+/// Samples a scene through its camera; what it traces is added to `counts`.
 pub(super) struct Worker<'a> {
     pub(super) tracer: Tracer<'a>,
     pub(super) view: View,
@@ -55,12 +60,7 @@ impl Sampler for Worker<'_> {
             let dirs = some.iter().map(|place| self.view.direction(*place));
             self.tracer.trace(self.view.eye(), dirs, samples);
         }
-    }
-}
-
-impl Drop for Worker<'_> {
-    fn drop(&mut self) {
-        let mut counts = self.counts.lock().unwrap_or_else(PoisonError::into_inner);
-        *counts = *counts + self.tracer.counts();
+        let mut counts = lock(self.counts);
+        *counts = *counts + self.tracer.take_counts();
     }
 }

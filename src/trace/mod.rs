@@ -101,9 +101,9 @@ impl<'a> Tracer<'a> {
         }
     }
 
-    /// How many rays were cast so far.
-    pub fn counts(&self) -> RayCounts {
-        self.counts
+    /// How many rays were cast since it was asked last.
+    pub fn take_counts(&mut self) -> RayCounts {
+        std::mem::take(&mut self.counts)
     }
 
     /// Puts what camera rays from `eye` along `dirs`, in the scene's own coordinates, show behind what `samples` holds.

@@ -235,7 +235,7 @@ mod tests {
                     tracer.trace(view.eye(), dirs.iter().copied(), &mut all);
                 }
                 let waited = tracer.waiting.together.is_some();
-                (waited, all, tracer.counts())
+                (waited, all, tracer.take_counts())
             };
             let (_, at_once, expected) = trace(BATCH, usize::MAX);
             // All at the end, and some whenever there is no more room.
