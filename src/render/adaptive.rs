@@ -17,7 +17,7 @@ use super::{
     known::{APRON, Known},
     outlook::Outlook,
     plane::{Area, Plane, Tiled},
-    round::{Pixel, Round, Threshold, add_rays, corners_of, is_picked},
+    round::{Pixel, Round, Threshold, add_rays, corners_of},
 };
 use crate::{
     aa::{
@@ -104,18 +104,15 @@ impl Adaptive {
         // The first samples of a pixel are four and more.
         let group = crew.tiles_at_once(4.0 * threshold.share());
         crew.run_groups(area, group, counted, &stop, |sampler, scratch, tiles| {
-            let (mut chosen, mut counts) = (Vec::new(), Vec::with_capacity(tiles.len()));
-            for tile in tiles {
-                let before = chosen.len();
-                lock(&known).choose(tile, threshold, &mut chosen);
-                counts.push(chosen.len() - before);
-            }
-            if chosen.is_empty() {
-                return;
-            }
+            let mut taken: Vec<Vec<Pixel>> = {
+                let mut known = lock(&known);
+                tiles.iter().map(|tile| known.take(tile, threshold)).collect()
+            };
+            let is_above = |pixel: &&mut Pixel| pixel.is_above(threshold);
+            let mut chosen: Vec<&mut Pixel> = taken.iter_mut().flatten().filter(is_above).collect();
             round.cross(&mut chosen);
             let mut wanting: Vec<usize> =
-                (0..chosen.len()).filter(|&place| round.wants(&chosen[place])).collect();
+                (0..chosen.len()).filter(|&place| round.wants(chosen[place])).collect();
             while !wanting.is_empty() {
                 if !round.give(&wanting, &mut chosen, (sampler, scratch), spent) {
                     break;
@@ -123,11 +120,17 @@ impl Adaptive {
                 if matches!(threshold, Threshold::PerRayOfSome(..)) {
                     break; // how much was worth it is known for one stage
                 }
-                wanting.retain(|&place| round.wants(&chosen[place]));
+                wanting.retain(|&place| round.wants(chosen[place]));
             }
-            let (mut known, mut chosen) = (lock(&known), chosen.into_iter());
-            for (tile, count) in tiles.iter().zip(counts).filter(|(_, count)| *count > 0) {
-                known.put_back(tile, chosen.by_ref().take(count), centers, threshold);
+            let mut known = lock(&known);
+            for (tile, mut pixels) in tiles.iter().zip(taken).filter(|(_, all)| !all.is_empty()) {
+                known.show(&mut pixels, centers);
+                if threshold.is_final() {
+                    for pixel in &mut pixels {
+                        pixel.refined = None;
+                    }
+                }
+                known.put_back(tile, pixels);
             }
         });
     }
@@ -191,11 +194,8 @@ impl Adaptive {
         let (area, centers) = (&self.area, &self.centers);
         let around = Area { x0: tile.x0 - 1, y0: tile.y0 - 1, ..*tile }.common(area);
         let (mut is_wanted, corners) = (vec![false; tile.len()], self.corners.of(tile));
-        for ((x, y), pixel) in self.known.above(&around, threshold) {
-            if pixel.stage > 0 || !is_picked(threshold, x, y) {
-                continue;
-            }
-            for (x, y) in corners_of(x, y) {
+        for pixel in self.known.above(&around, threshold).filter(|pixel| pixel.stage == 0) {
+            for (x, y) in corners_of(pixel.x, pixel.y) {
                 let is_traced = |place: usize| corners.get(place).is_some_and(|c| c.rays > 0);
                 if tile.contains(x, y)
                     && !is_traced(tile.place_of(x, y))
@@ -228,7 +228,7 @@ impl Adaptive {
 
     /// The estimated squared error, summed over the pixels.
     fn squared_error(&self) -> f64 {
-        self.known.outlooks.values().iter().map(|tile| tile.expected).sum()
+        self.known.outlooks().map(|tile| tile.expected).sum()
     }
 
     /// The colours and the rays of the pixels so far.
@@ -243,12 +243,12 @@ impl Adaptive {
 
     /// Whether a pixel that is off may get more rays.
     pub(super) fn can_improve(&self) -> bool {
-        self.known.outlooks.values().iter().any(Outlook::can_improve)
+        self.known.outlooks().any(Outlook::can_improve)
     }
 
     /// Whether a pixel is to get more rays whatever its error.
     pub(super) fn is_due(&self) -> bool {
-        self.known.outlooks.values().iter().any(Outlook::is_due)
+        self.known.outlooks().any(Outlook::is_due)
     }
 
     /// How many pixels got all the rays they may get, and have a squared error of at least `limit`.
@@ -256,7 +256,7 @@ impl Adaptive {
         let is_unsettled = |p: &&Pixel| {
             usize::from(p.stage) >= self.stages.len() && p.error > 0.0 && p.error >= limit
         };
-        self.known.pixels.tiles().iter().flatten().filter(is_unsettled).count()
+        self.known.pixels().filter(is_unsettled).count()
     }
 
     /// As [`Known::demand`].

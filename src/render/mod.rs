@@ -12,6 +12,7 @@ mod hints;
 mod known;
 mod look;
 mod outlook;
+mod patch;
 mod picture;
 mod plain;
 mod plane;

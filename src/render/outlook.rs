@@ -84,9 +84,10 @@ pub(super) struct Outlook {
 }
 
 impl Outlook {
-    /// The outlook of pixels of these worths.
-    pub(super) fn of(worths: impl Iterator<Item = Worth>) -> Self {
-        worths.fold(Self::default(), |outlook, worth| {
+    /// The outlook of pixels of these worths, and of others that add so much to the picture's squared error.
+    pub(super) fn of(settled: f64, worths: impl Iterator<Item = Worth>) -> Self {
+        let settled = Self { expected: settled, ..Self::default() };
+        worths.fold(settled, |outlook, worth| {
             let per_ray = |error: f32| if error > 0.0 { error / worth.rays } else { 0.0 };
             Self {
                 error: outlook.error.max(worth.error),
@@ -132,7 +133,7 @@ mod tests {
             let least = Least { samples, if_alike: 8 * samples, part: 1.0 / 32.0 };
             let pixel = Pixel { error, least, ..Pixel::default() };
             let worth = Worth::of(&pixel, error, &stages, &center);
-            (worth, Outlook::of([worth].into_iter()))
+            (worth, Outlook::of(0.0, [worth].into_iter()))
         };
         let late = |limit: f32| Threshold::PerRayOfSome(limit, 1.0, 7);
         let per_ray = 3.0 * OWN_CORNERS;

@@ -219,11 +219,6 @@ impl<T> Tiled<T> {
         &self.area
     }
 
-    /// The values of all tiles.
-    pub(super) fn tiles(&self) -> &[Vec<T>] {
-        self.tiles.values()
-    }
-
     /// The values of a tile, row by row.
     pub(super) fn of(&self, tile: &Area) -> &[T] {
         let (column, row) = self.area.tile_of(tile.x0, tile.y0);
@@ -244,31 +239,6 @@ impl<T> Tiled<T> {
         }
         let (column, row) = self.area.tile_of(x, y);
         self.tiles.at(column, row).get(self.tile(column, row).place_of(x, y))
-    }
-
-    /// The value of a pixel of the area.
-    pub(super) fn get_mut(&mut self, x: i64, y: i64) -> Option<&mut T> {
-        let (column, row) = self.area.tile_of(x, y);
-        let place = self.tile(column, row).place_of(x, y);
-        self.tiles.at_mut(column, row).get_mut(place)
-    }
-
-    /// The known values of the pixels of `part`, which has some and is within the area, tile by tile.
-    pub(super) fn within(&self, part: &Area) -> impl Iterator<Item = ((i64, i64), &T)> {
-        let ((left, top), (right, bottom)) =
-            (self.area.tile_of(part.x0, part.y0), self.area.tile_of(part.x1 - 1, part.y1 - 1));
-        let tiles = Area { x0: left, y0: top, x1: right + 1, y1: bottom + 1 };
-        let known = tiles
-            .pixels()
-            .map(|(column, row)| (self.tile(column, row), self.tiles.at(column, row)));
-        let part = *part;
-        known.filter(|(_, values)| !values.is_empty()).flat_map(move |(tile, values)| {
-            let piece = tile.common(&part);
-            (piece.y0..piece.y1).flat_map(move |y| {
-                let start = tile.place_of(piece.x0, y);
-                (piece.x0..piece.x1).zip(&values[start..]).map(move |(x, value)| ((x, y), value))
-            })
-        })
     }
 
     /// The tile in a column and row of tiles.

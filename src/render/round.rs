@@ -56,9 +56,12 @@ impl Threshold {
     }
 }
 
-/// What is known of a pixel.
+/// What is known of a pixel that may be refined, or was.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Pixel {
+    /// Its column and row in the whole picture.
+    pub(super) x: i64,
+    pub(super) y: i64,
     /// 0 is the centre alone, 1 centre and corners, from 2 on with samples.
     pub(super) stage: u8,
     /// Whether a neighbour's signature differs.
@@ -80,6 +83,8 @@ pub(super) struct Pixel {
     /// What more rays are worth to it.
     pub(super) worth: Worth,
     pub(super) refined: Option<Box<Refined>>,
+    /// Whether it got samples that the picture does not show yet.
+    pub(super) has_changed: bool,
 }
 
 impl Pixel {
@@ -93,6 +98,11 @@ impl Pixel {
             self.error = self.error.max(self.unseen.error);
         }
         self.unseen.expected_after(0)
+    }
+
+    /// Whether it is above the threshold, that is for it, and may get more rays.
+    pub(super) fn is_above(&self, threshold: Threshold) -> bool {
+        self.worth.exceeds(threshold) && is_picked(threshold, self.x, self.y)
     }
 
     /// The samples of the sequence so far.
@@ -141,14 +151,6 @@ impl Unseen {
     }
 }
 
-/// A pixel above the threshold, taken out of the picture to be worked at.
-pub(super) struct Chosen {
-    pub(super) x: i64,
-    pub(super) y: i64,
-    pub(super) pixel: Pixel,
-    pub(super) has_changed: bool,
-}
-
 /// Whether the four centres around a corner saw different things.
 fn is_disputed(centers: &Plane<Sample>, x: i64, y: i64) -> bool {
     let signature = centers.at(x, y).signature;
@@ -163,7 +165,7 @@ pub(super) fn corners_of(x: i64, y: i64) -> [(i64, i64); 4] {
 }
 
 /// Whether the threshold is for this pixel at all.
-pub(super) fn is_picked(threshold: Threshold, x: i64, y: i64) -> bool {
+fn is_picked(threshold: Threshold, x: i64, y: i64) -> bool {
     match threshold {
         Threshold::PerRayOfSome(_, share, round) if share < 1.0 => {
             let place = (x as u64) << 32 ^ y as u64;
@@ -190,15 +192,13 @@ pub(super) struct Round<'a> {
 
 impl Round<'_> {
     /// Takes the corners into the pixels above the threshold that have only their centres.
-    pub(super) fn cross(&self, chosen: &mut [Chosen]) {
+    pub(super) fn cross(&self, chosen: &mut [&mut Pixel]) {
         let Some(corners) = self.stages.first() else { return };
-        for one in chosen {
-            let (x, y, center) = (one.x, one.y, self.centers.at(one.x, one.y));
-            if one.pixel.stage > 0 {
-                continue;
-            }
+        for pixel in chosen.iter_mut().filter(|pixel| pixel.stage == 0) {
+            let (x, y) = (pixel.x, pixel.y);
+            let center = self.centers.at(x, y);
             let corner = |(x, y): (i64, i64)| {
-                if one.pixel.needs_corner(self.centers, x, y) {
+                if pixel.needs_corner(self.centers, x, y) {
                     // Without rays it was to be traced, but time was up.
                     let sample = self.corners.get(x, y).filter(|sample| sample.rays > 0)?;
                     return Some((sample.color, sample.signature));
@@ -210,18 +210,17 @@ impl Round<'_> {
             let [Some(a), Some(b), Some(c), Some(d)] = corners_of(x, y).map(corner) else {
                 continue;
             };
-            self.judge(one, Box::new(Refined::new(*corners, center, &[a, b, c, d])));
+            self.judge(pixel, Box::new(Refined::new(*corners, center, &[a, b, c, d])));
         }
     }
 
     /// Whether a pixel with corners wants the samples of its next stage.
-    pub(super) fn wants(&self, Chosen { pixel, .. }: &Chosen) -> bool {
+    pub(super) fn wants(&self, pixel: &Pixel) -> bool {
         pixel.refined.is_some() && pixel.worth.exceeds(self.threshold)
     }
 
     /// Takes over what is known of a pixel after a stage.
-    fn judge(&self, one: &mut Chosen, refined: Box<Refined>) {
-        let pixel = &mut one.pixel;
+    fn judge(&self, pixel: &mut Pixel, refined: Box<Refined>) {
         let (mut error, mut expected) = refined.errors(pixel.contrast, pixel.busy, pixel.detail);
         let points = refined.points();
         let may_go_on = self.stages.last().is_some_and(|last| points < last.points);
@@ -237,9 +236,9 @@ impl Round<'_> {
         expected += pixel.unseen.expected_after(points);
         (pixel.error, pixel.refined) = (error, Some(refined));
         pixel.stage += 1;
-        let center = self.centers.at(one.x, one.y);
+        let center = self.centers.at(pixel.x, pixel.y);
         pixel.worth = Worth::of(pixel, expected, self.stages, center);
-        one.has_changed = true;
+        pixel.has_changed = true;
     }
 
     /// Gives the pixels in the places `wanting` the samples of their next stage; returns whether there was time for
@@ -247,7 +246,7 @@ impl Round<'_> {
     pub(super) fn give<S: Sampler + Send>(
         &self,
         wanting: &[usize],
-        chosen: &mut [Chosen],
+        chosen: &mut [&mut Pixel],
         (sampler, scratch): (&mut S, &mut Scratch),
         spent: &AtomicU64,
     ) -> bool {
@@ -262,7 +261,7 @@ impl Round<'_> {
             let [least, most] = AT_ONCE;
             let at_once = sampler.at_once().clamp(least, most);
             while count < rest.len() && scratch.places.len() < at_once {
-                self.next_places(&chosen[rest[count]], &mut scratch.places);
+                self.next_places(chosen[rest[count]], &mut scratch.places);
                 count += 1;
             }
             sampler.sample(&scratch.places, &mut scratch.samples);
@@ -270,30 +269,30 @@ impl Round<'_> {
             let mut answers = scratch.samples.iter();
             let (now, later) = rest.split_at(count);
             for &place in now {
-                self.advance(&mut chosen[place], &mut answers);
+                self.advance(chosen[place], &mut answers);
             }
             rest = later;
         }
         true
     }
 
-    fn next_places(&self, Chosen { x, y, pixel, .. }: &Chosen, places: &mut Vec<DVec2>) {
-        let number = *y as u64 * u64::from(self.width) + *x as u64;
+    fn next_places(&self, pixel: &Pixel, places: &mut Vec<DVec2>) {
+        let number = pixel.y as u64 * u64::from(self.width) + pixel.x as u64;
         let sequence = Sequence::of_pixel(number, 0);
-        let corner = DVec2::new(*x as f64, *y as f64);
+        let corner = DVec2::new(pixel.x as f64, pixel.y as f64);
         let from = pixel.points();
         let to = self.stages.get(usize::from(pixel.stage)).map_or(from, |stage| stage.points);
         places.extend((from..to).map(|point| corner + sequence.place(point)));
     }
 
-    fn advance<'s>(&self, one: &mut Chosen, answers: &mut impl Iterator<Item = &'s Sample>) {
-        let next = self.stages.get(usize::from(one.pixel.stage));
-        if let (Some(stage), Some(mut refined)) = (next, one.pixel.refined.take()) {
+    fn advance<'s>(&self, pixel: &mut Pixel, answers: &mut impl Iterator<Item = &'s Sample>) {
+        let next = self.stages.get(usize::from(pixel.stage));
+        if let (Some(stage), Some(mut refined)) = (next, pixel.refined.take()) {
             refined.begin(*stage);
             for sample in answers.take((stage.points - refined.points()) as usize) {
                 refined.add(sample);
             }
-            self.judge(one, refined);
+            self.judge(pixel, refined);
         }
     }
 }

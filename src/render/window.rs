@@ -19,6 +19,9 @@ use crate::{
 /// fewer, the others are any.
 const LANES: usize = (TILE_SIDE as usize + 2).next_multiple_of(4);
 
+/// The squared differences between a pixel of noise and its eight neighbours, as a multiple of the noise's variance.
+const CONTRAST_OF_NOISE: f32 = 16.0;
+
 /// The centres of a tile and of the pixels around it, encoded; pixels outside of what is known repeat those at its
 /// edge.
 pub(super) struct Window {
@@ -60,6 +63,17 @@ pub(super) struct Noise {
     most: f32,
 }
 
+impl Survey {
+    /// The contrast of the pixels to their neighbours, row by row.
+    pub(super) fn contrasts(&self) -> Vec<f32> {
+        let mut contrasts: Vec<f32> = self.noise.iter().map(|noise| noise.contrast()).collect();
+        for (place, look) in &self.suspects {
+            contrasts[*place] = look.contrast;
+        }
+        contrasts
+    }
+}
+
 impl Noise {
     fn and(self, other: Self) -> Self {
         Self { error: self.error + other.error, most: self.most + other.most }
@@ -68,6 +82,11 @@ impl Noise {
     /// The squared error of the pixel in the middle, none where it is not busy.
     pub(super) fn error(self) -> f32 {
         self.busy() * self.error / 9.0
+    }
+
+    /// The squared differences between that pixel and its eight neighbours.
+    pub(super) fn contrast(self) -> f32 {
+        CONTRAST_OF_NOISE * self.error()
     }
 
     /// How busy it is there.
