@@ -201,8 +201,8 @@ fn check_most([width, height]: [u32; 2]) -> Result<(), Failure> {
     }
     let (needed, most) = (memory::readable(needed), memory::readable(memory::MOST_BYTES));
     Err(Failure::usage(anyhow!(
-        "--size {width}x{height} needs {needed} of memory; choose a size that needs at most {most}, or render it in smaller \
-         parts with --tile and join them with `whitted merge`"
+        "a picture of {width}x{height} pixels needs {needed} of memory; choose a --size that needs at most {most}, or render \
+         it in smaller parts with --tile and join them with `whitted merge`"
     )))
 }
 

@@ -21,12 +21,16 @@ impl Polygon {
     /// The polygon with these corners. Polygons with common corners leave no gap between them.
     ///
     /// # Errors
-    /// Fewer than three corners, corners that are not finite, on one line, not in one plane, or not convex.
+    /// Fewer than three corners, corners that are not finite, on one line, not in one plane, or not convex; an outline
+    /// that goes around as much to one side as to the other.
     pub fn try_new(vertices: Vec<DVec3>) -> Result<Self, ShapeError> {
         if vertices.len() < 3 {
             return Err(ShapeError::TooFewVertices { count: vertices.len() });
         }
-        let normal = flat::unit_normal(&vertices)?;
+        let normal = flat::unit_normal(&vertices).map_err(|error| {
+            let has_area = vertices.windows(3).any(|corners| flat::unit_normal(corners).is_ok());
+            if has_area { ShapeError::NoSide } else { error }
+        })?;
         let polygon = Self { vertices, normal };
         polygon.check_outline()?;
         Ok(polygon)

@@ -38,6 +38,9 @@ pub enum ShapeError {
     /// A flat shape has no area.
     #[error("the corners lie on one line, but must span an area")]
     NoArea,
+    /// The parts of a polygon that crosses itself cancel out.
+    #[error("the outline crosses itself and its sides cancel out; give the corners in order")]
+    NoSide,
     /// A polygon has fewer than three corners.
     #[error("the polygon has {count} corners, but needs at least 3")]
     TooFewVertices {

@@ -128,7 +128,9 @@ fn found(name: &str, options: &LoadOptions) -> Result<Gathered, SceneError> {
     }
     let path = Path::new(name);
     let kind = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-    if options.objects.is_some() {
+    let is_described =
+        name == STANDARD_INPUT || matches!(kind.as_deref(), Some("obj" | "toml" | "nff"));
+    if is_described && options.objects.is_some() {
         let known = "spheres".to_owned();
         return Err(SceneError::NotGenerated { name: name.to_owned(), known });
     }

@@ -54,6 +54,7 @@ fn bad_values_are_refused_on_one_line_before_anything_is_written() {
         (&["--quiet", "--quiet"], &["--quiet"]),
         (&["one", "two"], &["two"]),
         (&["nowhere"], &["nowhere", "assignment"]),
+        (&["nowhere", "--objects", "7"], &["unknown scene `nowhere`", "assignment"]),
         (&["two\nlines"], &["two\\nlines"]),
         (&["-o", "picture"], &["picture", ".png"]),
         (&["-o", "picture.tif"], &["picture.tif", ".png"]),

@@ -24,8 +24,8 @@ pub(crate) const CONTROLS: &str = "  left button, arrows     orbit around what i
 Mouse and keys:
 {CONTROLS}
 
-Saved pictures are called scene-view-1.png, -2 and so on, in the current folder. Once all passes are done, they are byte for byte
-what `whitted render` writes with the printed camera.
+Saved pictures are called scene-view-1.png, -2 and so on, in the current folder. Once all passes
+are done, they are byte for byte what `whitted render` writes with the printed camera.
 
 Examples:
   whitted view
