@@ -4,7 +4,7 @@ use std::{
     io,
     path::{Path, PathBuf},
     sync::{
-        Mutex, MutexGuard, PoisonError,
+        Mutex, MutexGuard, OnceLock, PoisonError,
         atomic::{AtomicBool, Ordering},
     },
     time::{Duration, Instant},
@@ -23,6 +23,9 @@ use crate::{
 /// The least time between two looks at a picture towards a goal, which are copies of all of it.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(250);
 
+/// How long the blocks at which work goes on have to be finished, once no further one is begun.
+const TO_FINISH: Duration = Duration::from_secs(5);
+
 /// How many times as long as writing an unfinished picture took, it is not written again.
 const REST: u32 = 50;
 
@@ -31,6 +34,8 @@ pub struct Job<'a> {
     label: Label,
     places: Vec<Tile>,
     stop: &'a AtomicBool,
+    /// When it was first seen that `stop` was set.
+    stopped: OnceLock<Instant>,
     progress: &'a (dyn Fn(Progress) + Sync),
     state: Mutex<State>,
     /// Whether an unfinished picture is to be written.
@@ -65,7 +70,7 @@ struct Kept {
 
 impl<'a> Job<'a> {
     /// A picture of which nothing is finished: the part that `label` names, in blocks at `places`, whose checkpoint is
-    /// at `path`. No block is begun once `stop` is set.
+    /// at `path`. No block is begun once `stop` is set, and those that take five seconds more are abandoned.
     pub fn new(
         label: Label,
         places: Vec<Tile>,
@@ -85,7 +90,8 @@ impl<'a> Job<'a> {
         };
         let (is_due, state) = (AtomicBool::new(false), Mutex::new(state));
         let kept = Kept { path, checkpoint: None, unfinished: None, next: now, failure: None };
-        Self { label, places, stop, progress, state, is_due, kept: Mutex::new(kept) }
+        let stopped = OnceLock::new();
+        Self { label, places, stop, stopped, progress, state, is_due, kept: Mutex::new(kept) }
     }
 
     /// Takes what is in the checkpoint.
@@ -300,6 +306,10 @@ impl Sink for Job<'_> {
 
     fn is_stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
+    }
+
+    fn is_abandoned(&self) -> bool {
+        self.is_stopped() && self.stopped.get_or_init(Instant::now).elapsed() >= TO_FINISH
     }
 
     fn report(&self, progress: Progress) {

@@ -31,7 +31,7 @@ use crate::{
 };
 
 /// The first line of every checkpoint.
-const MAGIC: &[u8] = b"whitted checkpoint 5\n";
+const MAGIC: &[u8] = b"whitted checkpoint 6\n";
 /// The longest head that is read, in bytes.
 const LONGEST_HEAD: u32 = 1 << 16;
 

@@ -48,7 +48,7 @@ pub(crate) fn run(
     args: &RenderArgs,
     preview: &mut Preview,
 ) -> Result<Finished, Failure> {
-    let Order { options, label, picture, signals, warnings, .. } = order;
+    let Order { scene, options, label, picture, signals, warnings, .. } = order;
     let mode = match args.progress {
         _ if args.quiet => ProgressMode::None,
         // The line below the picture tells it.
@@ -61,7 +61,7 @@ pub(crate) fn run(
     };
     let pixels = f64::from(label.place().width()) * f64::from(label.place().height());
     let reporter = Reporter::new(mode, pixels);
-    let places = blocks(&label.place(), options.aa, options.goal);
+    let places = blocks(scene, options)?;
     let stop = signals.defer();
     let course = Course::default();
     let report = |progress: Progress| {

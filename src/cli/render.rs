@@ -230,14 +230,14 @@ fn summary(
         pixels => format!(" ({pixels} pixels still above the limit with all their rays)"),
     };
     let Rendering { film, rays, threads, depth, seconds, .. } = rendering;
-    let all = rays.camera + rays.reflected + rays.refracted + rays.transmitted + rays.shadow;
     let plural = if *threads == 1 { "" } else { "s" };
     format!(
         "wrote {name}: {}x{} pixels, {mode}, depth {depth}{error}{unsettled}, {total:.2} s\n\
-         {all} rays in {seconds:.2} s on {threads} thread{plural}: {} camera, {} reflected, {} refracted, \
+         {} rays in {seconds:.2} s on {threads} thread{plural}: {} camera, {} reflected, {} refracted, \
          {} transmitted, {} shadow",
         film.width(),
         film.height(),
+        rays.all(),
         rays.camera,
         rays.reflected,
         rays.refracted,

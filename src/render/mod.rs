@@ -43,7 +43,7 @@ pub use picture::{Picture, picture};
 pub use crate::trace::RayCounts;
 use crate::{
     aa::{AaError, AntiAliasing},
-    camera::Camera,
+    camera::{Camera, View},
     film::{Film, Tile},
     scene::Scene,
     trace::Tracer,
@@ -236,6 +236,13 @@ pub fn part(scene: &Scene, options: &RenderOptions) -> Result<Tile, RenderError>
     Ok(part)
 }
 
+/// Where the picture that is wanted is seen from.
+fn view(scene: &Scene, options: &RenderOptions) -> View {
+    let [width, height] = options.size.unwrap_or(scene.resolution());
+    let camera = options.camera.map_or(*scene.camera(), |camera| scene.own_camera(camera));
+    camera.view(width, height)
+}
+
 /// Renders the [`blocks`] of a picture of `scene` that `sink` wants, and hands them to it.
 ///
 /// Each block is the same whichever others are rendered, in whatever order and by however many threads, unless the goal
@@ -255,11 +262,10 @@ pub fn render_blocks(
     if options.goal != Goal::Mode && !is_adaptive {
         return Err(RenderError::Goal { aa: options.aa });
     }
-    let [width, height] = options.size.unwrap_or(scene.resolution());
+    let [width, _] = options.size.unwrap_or(scene.resolution());
     let depth = options.depth.unwrap_or(scene.depth());
     let pool = pool(options.threads)?;
-    let camera = options.camera.map_or(*scene.camera(), |camera| scene.own_camera(camera));
-    let (view, mode) = (camera.view(width, height), (options.aa, options.goal));
+    let (view, mode) = (view(scene, options), (options.aa, options.goal));
     let area = Area::of(&part);
     let hints = is_adaptive.then(|| pool.install(|| Hints::of(scene, &view, &area)));
     let is_one_ray = matches!(options.aa, AntiAliasing::None | AntiAliasing::Grid { side: 1 });
@@ -281,10 +287,13 @@ pub fn render_blocks(
         };
         let watch = Watch { sink, place, rays: &rays };
         let picture = picture_watched(place, width, mode, &new_sampler, progress, &watch);
+        if options.goal == Goal::Mode && sink.is_abandoned() {
+            return None;
+        }
         let rays = rays.into_inner().unwrap_or_else(PoisonError::into_inner);
-        picture.into_block(number, *place, rays)
+        Some(picture.into_block(number, *place, rays))
     };
-    let places = blocks(&part, options.aa, options.goal);
+    let places = blocks(scene, options)?;
     pool.install(|| blocks::run(&places, progress_units(options.aa, options.goal), sink, &block));
     let seconds = started.elapsed().as_secs_f64();
     Ok(Effort { threads: pool.current_num_threads(), seconds, depth })

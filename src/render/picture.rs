@@ -63,7 +63,7 @@ impl Sink for Nobody {
     fn put(&self, _: Block) {}
 }
 
-/// The same, looked after.
+/// The same, looked after. Of a picture that the sink has abandoned, any part may be missing.
 pub(super) fn picture_watched<S: Sampler + Send>(
     part: &Tile,
     width: u32,
@@ -76,26 +76,30 @@ pub(super) fn picture_watched<S: Sampler + Send>(
     let started = Instant::now();
     let meter = Meter::new(progress_units(aa, goal) * area.len() as u64, progress);
     let crew = Crew::new(new_sampler, &meter);
+    let stop = || watch.sink.is_abandoned();
     match aa {
-        AntiAliasing::None | AntiAliasing::Grid { side: 1 } => plain::centers(&crew, &area),
-        AntiAliasing::Grid { side } => plain::grid(&crew, &area, side),
-        AntiAliasing::Sequence { count } => plain::sequence(&crew, &area, width, count),
+        AntiAliasing::None | AntiAliasing::Grid { side: 1 } => plain::centers(&crew, &area, &stop),
+        AntiAliasing::Grid { side } => plain::grid(&crew, &area, side, &stop),
+        AntiAliasing::Sequence { count } => plain::sequence(&crew, &area, width, count, &stop),
         AntiAliasing::Adaptive { error, most } => {
             let begun = || watch.kept().unwrap_or_else(|| Unfinished::new(&area, width, most));
             let (adaptive, outcome) = match goal {
                 Goal::Mode => {
                     let mut adaptive = Adaptive::new(&area, width, most);
                     let threshold = Threshold::Error(error * error);
-                    adaptive.begin(&crew, threshold, || false);
-                    meter.reach(0.5);
-                    adaptive.refine(&crew, threshold, true, || false);
+                    if adaptive.begin(&crew, threshold, stop) {
+                        meter.reach(0.5);
+                        adaptive.refine(&crew, threshold, true, stop);
+                    }
                     let unsettled = adaptive.unsettled(error * error);
                     (adaptive, Outcome { unsettled, ..Outcome::default() })
                 }
                 Goal::Error(wanted) => begun().reach_error(&crew, wanted, watch),
                 Goal::Until(end) => begun().reach_time(&crew, (started, end), watch),
             };
-            meter.reach(1.0);
+            if !stop() {
+                meter.reach(1.0);
+            }
             Picture { outcome, ..adaptive.into_picture() }
         }
     }

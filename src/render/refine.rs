@@ -5,7 +5,7 @@ use std::{
     time::Instant,
 };
 
-use super::{Account, Block, RenderError, RenderOptions, Sink, blocks, part, render_blocks};
+use super::{Account, Block, RenderError, RenderOptions, Sink, blocks, render_blocks};
 use crate::{aa::AntiAliasing, film::Film, scene::Scene};
 
 /// Pixels of the picture for each one of a coarse pass, either way.
@@ -118,8 +118,7 @@ impl Canvas {
                 shown.film = shown.film.resampled(size);
             }
             drop(shown);
-            let whole = part(scene, &options)?;
-            let count = blocks(&whole, options.aa, options.goal).len();
+            let count = blocks(scene, &options)?.len();
             let coarse = Film::new(pass.size[0], pass.size[1]);
             let own = Mutex::new(Own { coarse, accounts: vec![None; count] });
             let is_fine = pass.size == size;
@@ -196,6 +195,10 @@ impl Sink for Painter<'_> {
 
     fn is_stopped(&self) -> bool {
         self.canvas.of(self.number).is_none()
+    }
+
+    fn is_abandoned(&self) -> bool {
+        self.is_stopped()
     }
 }
 

@@ -1,4 +1,4 @@
-//! Who looks after a picture towards an error or until a time.
+//! Who looks after a picture while it is rendered.
 
 use std::sync::Mutex;
 

@@ -204,7 +204,7 @@ fn row(
         build: Preset::Auto.to_string(),
         build_seconds: setting.scene.bvh_stats().build_seconds,
         seconds,
-        rays: rays.camera + rays.reflected + rays.refracted + rays.transmitted + rays.shadow,
+        rays: rays.all(),
         rays_per_pixel: rays.camera as f64 / pixels,
         measured_rmse,
         estimated_rmse: rendering.estimated_rmse.unwrap_or(f64::NAN),

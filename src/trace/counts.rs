@@ -22,6 +22,11 @@ pub struct RayCounts {
 }
 
 impl RayCounts {
+    /// The rays of all kinds.
+    pub fn all(&self) -> u64 {
+        self.camera + self.reflected + self.refracted + self.transmitted + self.shadow
+    }
+
     fn combine(self, other: Self, op: impl Fn(u64, u64) -> u64) -> Self {
         Self {
             camera: op(self.camera, other.camera),

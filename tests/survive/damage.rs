@@ -6,9 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use whitted::checkpoint::{Checkpoint, CheckpointError, Job};
 use whitted::film::{Film, Label};
-use whitted::render::{
-    Effort, Goal, Progress, RenderOptions, Rendering, blocks, part, render_blocks,
-};
+use whitted::render::{Effort, Progress, RenderOptions, Rendering, blocks, render_blocks};
 use whitted::scene::{Scene, load_builtin};
 
 use super::{folder, run};
@@ -39,8 +37,7 @@ fn job<'a>(
     stop: &'a AtomicBool,
     progress: &'a (dyn Fn(Progress) + Sync),
 ) -> Job<'a> {
-    let places =
-        blocks(&part(scene, &options()).expect("in the picture"), options().aa, Goal::Mode);
+    let places = blocks(scene, &options()).expect("in the picture");
     assert!(places.len() >= 12);
     let label = label(scene, "aa=adaptive:2,4096");
     Job::new(label, places, Some(path.to_owned()), stop, progress)
@@ -121,7 +118,7 @@ fn a_checkpoint_of_another_picture_is_refused_with_what_differs() {
     let path = folder.path().join("a.checkpoint");
     let scene = load_builtin("assignment").expect("built in");
     Checkpoint::create(&path, &label(&scene, "aa=none depth=6")).expect("written");
-    let places = blocks(&part(&scene, &options()).expect("whole"), options().aa, Goal::Mode);
+    let places = blocks(&scene, &options()).expect("whole");
     let open = |label: Label| {
         let refused = Checkpoint::open(&path, &label, &places, |_| ()).expect_err("another");
         let CheckpointError::Differs { what, .. } = refused else { panic!("{refused}") };

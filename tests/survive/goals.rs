@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use whitted::checkpoint::{CheckpointError, Job};
-use whitted::render::{Effort, Goal, RenderOptions, Rendering, blocks, part, render_blocks};
+use whitted::render::{Effort, Goal, RenderOptions, Rendering, blocks, render_blocks};
 use whitted::scene::{Scene, load_builtin, load_builtin_of};
 
 use super::damage::{label, quiet};
@@ -21,7 +21,7 @@ fn options(scene: &Scene) -> RenderOptions {
 
 fn job<'a>(scene: &Scene, path: &Path, stop: &'a AtomicBool) -> Job<'a> {
     let options = options(scene);
-    let places = blocks(&part(scene, &options).expect("whole"), options.aa, options.goal);
+    let places = blocks(scene, &options).expect("whole");
     let label = label(scene, "max-error=0.3");
     Job::new(label, places, Some(path.to_owned()), stop, &quiet)
 }

@@ -4,7 +4,7 @@ use std::fs;
 use std::sync::atomic::AtomicBool;
 
 use whitted::checkpoint::Job;
-use whitted::render::{Goal, RenderOptions, blocks, part, render_blocks};
+use whitted::render::{Goal, RenderOptions, blocks, render_blocks};
 use whitted::scene::load_builtin;
 
 use super::damage::{label, quiet};
@@ -93,7 +93,7 @@ fn a_picture_that_only_has_to_be_written_says_what_it_missed() {
     let aa = "adaptive:0,8".parse().expect("a mode");
     let goal = Goal::Error(0.1);
     let options = RenderOptions { size: Some([200, 150]), aa, goal, ..RenderOptions::default() };
-    let places = blocks(&part(&scene, &options).expect("whole"), aa, goal);
+    let places = blocks(&scene, &options).expect("whole");
     let label = label(&scene, "aa=adaptive:0,8 depth=6 max-error=0.1");
     let path = at.join("a.png.checkpoint");
     let never = AtomicBool::new(false);
