@@ -40,8 +40,8 @@ pub(super) fn parse(path: &str, text: &[u8], warnings: &mut Vec<Warning>) -> Vec
     let mut lines = Lines::new(text);
     while let Some((number, line)) = lines.next_line() {
         let mut tokens = Tokens::new(line);
-        let Some(keyword) = tokens.next_word() else { continue };
-        let keyword = keyword.to_ascii_lowercase();
+        let Some(word) = tokens.next_word() else { continue };
+        let keyword = word.to_ascii_lowercase();
         let done = if keyword == b"newmtl" {
             let name = name_of(tokens.rest_as_name());
             materials.push(Mtl { name, ..Mtl::default() });
@@ -55,13 +55,15 @@ pub(super) fn parse(path: &str, text: &[u8], warnings: &mut Vec<Warning>) -> Vec
             && !warned.contains(&keyword)
             && warned.len() < 100
         {
-            let message = format!("`{}` {reason}", shown(&keyword));
+            let message = format!("`{}` {reason}", shown(word));
             warnings.push(Warning { file: path.to_owned(), line: number, message });
             warned.push(keyword);
         }
     }
     materials
 }
+
+const SHINES: &str = "makes a surface shine by itself, which is not supported; ignored";
 
 fn statement(m: &mut Mtl, keyword: &[u8], mut tokens: Tokens, line: u32) -> Result<(), String> {
     match keyword {
@@ -85,7 +87,23 @@ fn statement(m: &mut Mtl, keyword: &[u8], mut tokens: Tokens, line: u32) -> Resu
             m.illum = Some(model.ok_or_else(|| not_understood(token))?);
         }
         b"map_kd" => m.picture = Some(picture(tokens, line)?),
-        _ => {} // the light of a scene, roughness, bumps: not Whitted's
+        b"ke" => {
+            if color(tokens)? != [0.0; 3] {
+                return Err(SHINES.to_owned());
+            }
+        }
+        b"map_ke" => return Err(SHINES.to_owned()),
+        b"map_d" => {
+            return Err(
+                "makes parts of a surface transparent, which is not supported; ignored".to_owned()
+            );
+        }
+        // The light of a scene, roughness, bumps and the like, also of physically based materials: not Whitted's.
+        b"ka" | b"km" | b"sharpness" | b"map_ka" | b"map_ks" | b"map_ns" | b"map_aat"
+        | b"map_bump" | b"bump" | b"disp" | b"decal" | b"refl" | b"map_refl" | b"norm" | b"pr"
+        | b"pm" | b"ps" | b"pc" | b"pcr" | b"aniso" | b"anisor" | b"map_pr" | b"map_pm"
+        | b"map_ps" => {}
+        _ => return Err("is not known; ignored".to_owned()),
     }
     Ok(())
 }
@@ -112,8 +130,11 @@ fn color(mut tokens: Tokens) -> Result<[f64; 3], String> {
         return Ok([r; 3]);
     }
     tokens = rest;
-    let (g, b) = (number(&mut tokens)?, number(&mut tokens)?);
-    Ok([r, g, b])
+    let g = number(&mut tokens)?;
+    if { tokens }.next_number().is_none() {
+        return Err("has two numbers where one or three should be; ignored".to_owned());
+    }
+    Ok([r, g, number(&mut tokens)?])
 }
 
 fn picture(mut tokens: Tokens, line: u32) -> Result<PictureRef, String> {
@@ -192,11 +213,16 @@ mod tests {
     fn odd_statements_are_warned_about_once_a_kind() {
         let (m, warnings) =
             one("Kd 1 1 1\nnewmtl a\n KD 0.8\nKs spectral x.rfl\nNs hard\nNs soft\n\
-            Tr 0 0\nd -halo 0.5\nillum 2.0\nKa 1\nmap_Kd -s 1 1");
+            Tr 0 0\nd -halo 0.5\nillum 2.0\nKa 1\nmap_Kd -s 1 1\nKe 0 0 0\nKe 0 1 0\nmap_d a.png\n\
+            Tf 1 0\nkdd 1 1 1\nbump a.png");
         assert_eq!((m.diffuse, m.transparency, m.dissolve), (Some([0.8; 3]), Some(0.0), Some(0.5)));
         assert_eq!((m.illum, m.specular, m.shininess), (Some(2), None, None));
-        assert_eq!(warnings.len(), 3, "{warnings:#?}");
-        assert!(warnings[0].starts_with("m.mtl:1: `kd` stands before"), "{}", warnings[0]);
-        assert!(warnings[2].starts_with("m.mtl:5: `ns` has `hard`"), "{}", warnings[2]);
+        assert_eq!(warnings.len(), 7, "{warnings:#?}");
+        assert!(warnings[3].starts_with("m.mtl:13: `Ke` makes"), "{}", warnings[3]);
+        assert!(warnings[4].starts_with("m.mtl:14: `map_d` makes"), "{}", warnings[4]);
+        assert!(warnings[5].starts_with("m.mtl:15: `Tf` has two"), "{}", warnings[5]);
+        assert!(warnings[6].starts_with("m.mtl:16: `kdd` is not"), "{}", warnings[6]);
+        assert!(warnings[0].starts_with("m.mtl:1: `Kd` stands before"), "{}", warnings[0]);
+        assert!(warnings[2].starts_with("m.mtl:5: `Ns` has `hard`"), "{}", warnings[2]);
     }
 }
