@@ -37,14 +37,14 @@ pub(crate) fn run(args: &CompareArgs) -> Result<(), Failure> {
         Some(Map::Stdout) => {
             let mut bytes = Vec::new();
             write_map(&a, &b, &mut bytes).context("--heatmap")?;
-            streams::write_stdout(&bytes)?;
+            streams::to_stdout(|stdout| stdout.write_all(&bytes))?;
             streams::note(text.trim_end());
         }
         Some(Map::File(file)) => {
             file.commit(|writer| write_map(&a, &b, writer)).context("--heatmap")?;
-            streams::write_stdout(text.as_bytes())?;
+            streams::print(text.as_bytes())?;
         }
-        None => streams::write_stdout(text.as_bytes())?,
+        None => streams::print(text.as_bytes())?,
     }
     match args.fail_above {
         Some(limit) if difference.rmse > limit => Err(Failure::over_limit(anyhow!(

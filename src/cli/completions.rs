@@ -9,5 +9,5 @@ use super::streams;
 pub(crate) fn run(args: &CompletionsArgs) -> Result<(), Failure> {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut Args::command(), "whitted", &mut script);
-    streams::write_stdout(&script)
+    streams::print(&script)
 }

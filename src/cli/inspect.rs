@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use anyhow::anyhow;
 use serde::Serialize;
 use whitted::scene::obj::{ModelReport, inspect_model};
 use whitted::scene::{Warning, inspect_scene};
@@ -14,14 +15,20 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), Failure> {
     let is_model =
         args.file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj"));
     if !is_model {
-        let report = inspect_scene(&args.file.to_string_lossy())?;
+        let Some(name) = args.file.to_str() else {
+            return Err(Failure::usage(anyhow!(
+                "{}: the name of a scene must be UTF-8; rename it, or give - and redirect standard input from it",
+                args.file.display()
+            )));
+        };
+        let report = inspect_scene(name)?;
         let text = if args.json { scene::json(&report)? } else { scene::text(&report)? };
-        streams::write_stdout(text.as_bytes())?;
+        streams::print(text.as_bytes())?;
         return warn(&report.warnings, args.strict, true);
     }
     let report = inspect_model(&args.file)?;
     let text = if args.json { json(&report)? } else { text(&report)? };
-    streams::write_stdout(text.as_bytes())?;
+    streams::print(text.as_bytes())?;
     warn(&report.warnings, args.strict, true)
 }
 

@@ -1,6 +1,7 @@
 //! One picture from its first block to its file: checkpoints on the way, and what is left when it is stopped.
 
 use std::{
+    ffi::OsStr,
     panic::resume_unwind,
     sync::atomic::Ordering,
     time::{Duration, Instant},
@@ -226,16 +227,20 @@ fn finish(order: &Order, label: &Label, job: &Job) -> Result<(), Failure> {
 
 /// The command that was given, as a shell takes it, with `--resume`.
 fn resuming_command() -> String {
-    let mut words: Vec<String> =
-        std::env::args_os().map(|word| quoted(&word.to_string_lossy())).collect();
+    let mut words: Vec<String> = std::env::args_os().map(|word| quoted(&word)).collect();
     if !words.iter().any(|word| word == "--resume") {
         words.push("--resume".to_owned());
     }
     words.join(" ")
 }
 
-/// A word in single quotes if a shell would take it for anything else.
-fn quoted(word: &str) -> String {
+/// A word in quotes if a shell would take it for anything else; if it is not UTF-8, in those that take the numbers of
+/// bytes.
+fn quoted(word: &OsStr) -> String {
+    let Some(word) = word.to_str() else {
+        let bytes = word.as_encoded_bytes().iter().map(|byte| format!("\\{byte:03o}"));
+        return format!("$'{}'", bytes.collect::<Vec<_>>().concat());
+    };
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,=@%+".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {
         return word.to_owned();
@@ -251,10 +256,18 @@ mod tests {
     #[cfg(unix)]
     #[test]
     fn quoted_words_are_words_to_a_shell() {
+        use std::os::unix::ffi::OsStrExt as _;
+
         for word in ["plain", "", "two words", "it's", "$HOME*;", "a\nb", "--tile=1/2,3/4", "ü"] {
-            let command = format!("printf %s {}", quoted(word));
+            let command = format!("printf %s {}", quoted(OsStr::new(word)));
             let output = std::process::Command::new("sh").args(["-c", &command]).output();
             assert_eq!(output.expect("a shell").stdout, word.as_bytes(), "{word}");
+        }
+        // Not all shells know these quotes.
+        let word = OsStr::from_bytes(b"it's\xff.png");
+        let command = format!("printf %s {}", quoted(word));
+        if let Ok(output) = std::process::Command::new("bash").args(["-c", &command]).output() {
+            assert_eq!(output.stdout, word.as_encoded_bytes());
         }
     }
 }

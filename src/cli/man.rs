@@ -24,12 +24,12 @@ pub(crate) fn run(args: &ManArgs) -> Result<(), Failure> {
         }
         return Ok(());
     }
-    let Some(about) = &args.about else { return streams::write_stdout(&page(&program)?) };
+    let Some(about) = &args.about else { return streams::print(&page(&program)?) };
     let command = program.find_subcommand(about).ok_or_else(|| {
         let known: Vec<&str> = program.get_subcommands().map(Command::get_name).collect();
         Failure::usage(anyhow!("there is no command `{about}`; choose one of {}", known.join(", ")))
     })?;
-    streams::write_stdout(&page(command)?)
+    streams::print(&page(command)?)
 }
 
 /// The name of a command's page.

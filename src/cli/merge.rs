@@ -2,9 +2,11 @@
 
 use std::fs::File;
 use std::io;
+use std::path::Path;
 
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 use whitted::film::{MergeError, OutputFile, merge};
+use whitted::scene::STANDARD_INPUT;
 
 use super::args::MergeArgs;
 use super::failure::Failure;
@@ -13,6 +15,9 @@ use super::target::{Picture, check_spared};
 
 /// Joins the parts that `args` name.
 pub(crate) fn run(args: &MergeArgs) -> Result<(), Failure> {
+    if args.parts.iter().any(|part| part == Path::new(STANDARD_INPUT)) {
+        return Err(Failure::usage(anyhow!("a part cannot come from standard input; name a file")));
+    }
     let picture = Picture::prepare(Some(&args.output), "", None, false)?;
     let [width, height] = match &picture {
         Picture::File(output) => {

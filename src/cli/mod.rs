@@ -42,7 +42,7 @@ pub(crate) fn run() -> ExitCode {
     let done = match Args::try_parse() {
         Ok(args) => perform(&args.command, started),
         Err(error) if error.use_stderr() => Err(Failure::from_clap(&error)),
-        Err(help_or_version) => streams::write_stdout(help_or_version.to_string().as_bytes()),
+        Err(help_or_version) => streams::print(help_or_version.to_string().as_bytes()),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

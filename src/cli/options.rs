@@ -8,7 +8,7 @@ use whitted::aa::AntiAliasing;
 use whitted::classic::CLASSIC_SIZE;
 use whitted::film::{Format, Label, Share, Tile, share};
 use whitted::render::{Goal, RenderOptions};
-use whitted::scene::Scene;
+use whitted::scene::{STANDARD_INPUT, Scene};
 
 use super::args::{RenderArgs, Rules};
 use super::failure::Failure;
@@ -72,6 +72,18 @@ pub(crate) fn check_parts(args: &RenderArgs) -> Result<(), Failure> {
     if several && args.reference.is_some() {
         return Err(Failure::usage(anyhow!(
             "--reference compares one picture; give only one tile"
+        )));
+    }
+    Ok(())
+}
+
+/// Standard input holds one thing.
+pub(crate) fn check_stdin(args: &RenderArgs) -> Result<(), Failure> {
+    let has_reference =
+        args.reference.as_ref().is_some_and(|path| path.as_os_str() == STANDARD_INPUT);
+    if has_reference && args.seen.scene == STANDARD_INPUT {
+        return Err(Failure::usage(anyhow!(
+            "the scene and the --reference are both to come from standard input, which holds one; name a file for the other"
         )));
     }
     Ok(())

@@ -167,6 +167,9 @@ pub(super) fn parse_model(text: &str) -> Result<ModelPlace, String> {
     if name.is_empty() {
         return Err("give a file, such as model.obj or model.obj@0,0,-80*5".to_owned());
     }
+    if name == STANDARD_INPUT {
+        return Err("a model cannot come from standard input; name a file".to_owned());
+    }
     let is_followed = [".obj@", ".obj*"].iter().any(|part| name.to_lowercase().contains(part));
     if is_followed && !Path::new(name).exists() {
         return Err(

@@ -15,7 +15,8 @@ use super::failure::Failure;
 use super::goal::short;
 use super::job::{self, Finished, Order};
 use super::options::{
-    check_classic, check_memory, check_parts, check_reference, check_size, label, options,
+    check_classic, check_memory, check_parts, check_reference, check_size, check_stdin, label,
+    options,
 };
 use super::preview::Preview;
 use super::signals::Signals;
@@ -53,6 +54,7 @@ pub(crate) fn run(args: &RenderArgs, started: Instant) -> Result<(), Failure> {
     check_classic(args)?;
     check_parts(args)?;
     check_size(args)?;
+    check_stdin(args)?;
     let loading = Instant::now();
     let rows = (args.rules == Rules::Classic).then_some(CLASSIC_SIZE);
     let Loaded { scene, warnings: odd, files } = args.seen.load(rows)?;

@@ -12,15 +12,15 @@ use super::streams;
 
 pub(crate) fn run(args: &ScenesArgs) -> Result<(), Failure> {
     if args.schema {
-        return streams::write_stdout(schema().as_bytes());
+        return streams::print(schema().as_bytes());
     }
     if let Some(name) = &args.show {
-        return streams::write_stdout(builtin(name)?.text().as_bytes());
+        return streams::print(builtin(name)?.text().as_bytes());
     }
     let width = builtins().iter().map(|scene| scene.name.len()).max().unwrap_or(0);
     let mut lines = String::new();
     for scene in builtins() {
         writeln!(lines, "{:width$}  {}", scene.name, scene.description)?;
     }
-    streams::write_stdout(lines.as_bytes())
+    streams::print(lines.as_bytes())
 }

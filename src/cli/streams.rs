@@ -7,22 +7,28 @@ use anyhow::Context;
 
 use super::failure::Failure;
 
-/// Writes all of `bytes` to standard output, as [`to_stdout`].
-pub(crate) fn write_stdout(bytes: &[u8]) -> Result<(), Failure> {
-    to_stdout(|stdout| stdout.write_all(bytes))
+/// Writes text to standard output; a reader that has left does not want the rest, which is no error.
+pub(crate) fn print(text: &[u8]) -> Result<(), Failure> {
+    match write(|stdout| stdout.write_all(text)) {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        done => checked(done),
+    }
 }
 
-/// Has something written to standard output; a reader that has left does not want the rest, which is no error.
+/// Has a result that took work written to standard output; a reader that has left did not get it.
 pub(crate) fn to_stdout(
-    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    result: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), Failure> {
+    checked(write(result))
+}
+
+fn write(what: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let mut stdout = io::stdout().lock();
-    match write(&mut stdout).and_then(|()| stdout.flush()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(error).context("standard output could not be written")?
-        }
-        _ => Ok(()),
-    }
+    what(&mut stdout).and_then(|()| stdout.flush())
+}
+
+fn checked(done: io::Result<()>) -> Result<(), Failure> {
+    Ok(done.context("standard output could not be written")?)
 }
 
 /// Writes a line for the user to standard error; nobody is left to tell if that fails.

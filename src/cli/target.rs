@@ -4,7 +4,7 @@ use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
-use whitted::film::{FileError, Film, Format, Label, OutputFile, Share, WholeFile, write_png};
+use whitted::film::{Film, Format, Label, OutputFile, Share, WholeFile, write_png};
 
 use super::failure::Failure;
 use super::streams;
@@ -79,7 +79,7 @@ impl Picture {
             Self::Stdout => {
                 let mut bytes = Vec::new();
                 write_png(film, Some(label), &mut bytes)?;
-                streams::write_stdout(&bytes)
+                streams::to_stdout(|stdout| stdout.write_all(&bytes))
             }
             Self::File(file) => Ok(file.commit(film, Some(label))?),
         }
@@ -115,16 +115,11 @@ impl StatsTarget {
 
     pub(crate) fn write(&self, json: &str) -> Result<(), Failure> {
         match self {
-            Self::Stdout => streams::write_stdout(json.as_bytes()),
-            Self::File(file) => match file.commit(|writer| writer.write_all(json.as_bytes())) {
-                // A pipe by name, such as /dev/stdout, whose reader has left.
-                Err(FileError::Write { source, .. })
-                    if source.kind() == io::ErrorKind::BrokenPipe =>
-                {
-                    Ok(())
-                }
-                done => Ok(done.context("--stats")?),
-            },
+            Self::Stdout => streams::to_stdout(|stdout| stdout.write_all(json.as_bytes())),
+            Self::File(file) => {
+                let done = file.commit(|writer| writer.write_all(json.as_bytes()));
+                Ok(done.context("--stats")?)
+            }
         }
     }
 }

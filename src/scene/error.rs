@@ -41,6 +41,9 @@ pub enum SceneError {
         /// The built-in scenes.
         known: String,
     },
+    /// A model alone came from standard input, where its material libraries and pictures cannot be.
+    #[error("standard input: this is an OBJ, which is only read from a file; give its name")]
+    ModelFromStdin,
     /// A model cannot be used.
     #[error(transparent)]
     Model(#[from] ModelError),

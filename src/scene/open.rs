@@ -137,6 +137,9 @@ fn found(name: &str, options: &LoadOptions) -> Result<Gathered, SceneError> {
     let (parts, names) = match kind.as_deref() {
         _ if name == STANDARD_INPUT => {
             let text = read_text("standard input", || text::read_stdin(LARGEST_SCENE))?;
+            if obj::is_obj(&text) {
+                return Err(SceneError::ModelFromStdin);
+            }
             if nff::is_nff(&text) {
                 let scene = nff::parse_nff("standard input", &text, options.rows)?;
                 (nff_parts(scene, &mut entities, &mut sources), Names::default())

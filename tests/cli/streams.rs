@@ -9,17 +9,29 @@ use super::{SMALL, render};
 use crate::program::{done, folder, json, run, said, text, whitted};
 
 #[test]
-fn a_reader_that_has_left_is_no_error() {
+fn a_reader_that_has_left_loses_results_but_no_lists() {
     let folder = folder();
     let picture = [&SMALL[..], &["-o", "-"]].concat();
     let stats = [&SMALL[..], &["--stats", "-"]].concat();
-    for arguments in [&["scenes"][..], &["--help"], &["--version"], &picture, &stats] {
+    let unread = |arguments: &[&str]| {
         let (reader, writer) = std::io::pipe().expect("a pipe");
         drop(reader);
         let output = whitted(folder.path(), arguments).stdout(writer).output();
-        let output = output.expect("the program runs");
+        output.expect("the program runs")
+    };
+    for arguments in [&["scenes"][..], &["--help"], &["--version"]] {
+        let output = unread(arguments);
         done(&output);
         assert!(!said(&output).contains("error"), "{}", said(&output));
+    }
+    for arguments in [&picture, &stats] {
+        let output = unread(arguments);
+        assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+        assert!(
+            said(&output).contains("standard output could not be written"),
+            "{}",
+            said(&output)
+        );
     }
 }
 
@@ -140,8 +152,24 @@ fn a_scene_may_come_from_standard_input() {
         assert_eq!(bad.status.code(), Some(3), "{}", said(&bad));
         assert!(said(&bad).contains(said_of), "{}", said(&bad));
     }
-    let study = run(folder.path(), &["study", "-"]);
-    assert_eq!(study.status.code(), Some(2), "{}", said(&study));
+    let model = folder.path().join("model");
+    fs::write(&model, "# a model\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("written");
+    let model = whitted(folder.path(), &["render", "-"])
+        .stdin(File::open(&model).expect("readable"))
+        .output()
+        .expect("runs");
+    assert_eq!(model.status.code(), Some(3), "{}", said(&model));
+    assert!(said(&model).contains("standard input: this is an OBJ"), "{}", said(&model));
+    for refused in [
+        &["study", "-"][..],
+        &["render", "--obj", "-"],
+        &["render", "-", "--reference", "-"],
+        &["merge", "-", "-o", "a.png"],
+    ] {
+        let output = run(folder.path(), refused);
+        assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+        assert!(said(&output).contains("name a file"), "{}", said(&output));
+    }
 }
 
 /// Oracle: the undivided render.

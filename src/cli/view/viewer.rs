@@ -185,7 +185,7 @@ impl Viewer {
             let state = if is_done { "" } else { ", which is not finished" };
             streams::note(&format!("wrote {named}{state}: {}", self.status(&self.canvas.look())));
         }
-        streams::write_stdout(camera_text(self.orbit.plan(), &self.given).as_bytes())
+        streams::print(camera_text(self.orbit.plan(), &self.given).as_bytes())
     }
 
     /// As the file of `whitted render` has it, so that the same picture is the same file.

@@ -28,7 +28,7 @@ pub use self::{
     report::{ModelReport, OpenEdge, TextureReport},
 };
 use super::{
-    text::{self, decode::LARGEST_FILE},
+    text::{self, Lines, Tokens, decode::LARGEST_FILE, float},
     warning::Warning,
 };
 use crate::{geometry::Mesh, material::Material};
@@ -46,6 +46,23 @@ pub struct Model {
     pub warnings: Vec<Warning>,
     /// The files that were read: its own, those of its materials and of their pictures.
     pub files: Vec<PathBuf>,
+}
+
+/// Whether a text that is of no file begins as an OBJ does.
+pub(super) fn is_obj(text: &[u8]) -> bool {
+    let mut lines = Lines::new(text);
+    while let Some((_, line)) = lines.next_line() {
+        let mut tokens = Tokens::new(line);
+        match tokens.next_word() {
+            None => {}
+            Some(b"mtllib" | b"usemtl" | b"o" | b"g" | b"vn" | b"vt") => {
+                return tokens.next_word() != Some(b"=");
+            }
+            Some(b"v") => return tokens.next_number().and_then(float).is_some(),
+            Some(_) => return false,
+        }
+    }
+    false
 }
 
 /// Reads the model of an OBJ file, its material libraries and their pictures.
