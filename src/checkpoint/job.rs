@@ -112,6 +112,14 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
+    /// Whether the file where the checkpoint is to be is one to go on from.
+    ///
+    /// # Errors
+    /// As [`Checkpoint::check`].
+    pub fn check_checkpoint(&self) -> Result<(), CheckpointError> {
+        self.checkpoint_path().map_or(Ok(()), |path| Checkpoint::check(&path, &self.label))
+    }
+
     fn restore(&self, record: &Record) {
         let mut state = self.state();
         let place = self.places[record.number].minus(&self.label.place());
@@ -177,18 +185,17 @@ impl<'a> Job<'a> {
         if is_lost {
             *checkpoint = None;
         }
-        let checkpoint = match checkpoint {
-            Some(checkpoint) => checkpoint,
-            None => checkpoint.insert(Checkpoint::create(path, &self.label)?),
-        };
         let error = |source| FileError::Write { path: path.to_owned(), source };
         while let Some((number, rest)) = numbers.split_first() {
             if let Some(record) = self.record(*number) {
-                checkpoint.append(&record).map_err(error)?;
+                match checkpoint {
+                    Some(checkpoint) => checkpoint.append(&record).map_err(error)?,
+                    None => *checkpoint = Some(Checkpoint::create(path, &self.label, &record)?),
+                }
             }
             *numbers = rest;
         }
-        checkpoint.sync().map_err(error)
+        checkpoint.as_ref().map_or(Ok(()), |checkpoint| checkpoint.sync().map_err(error))
     }
 
     /// A copy of a finished block.

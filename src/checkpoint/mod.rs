@@ -83,13 +83,13 @@ impl Checkpoint {
         PathBuf::from(name)
     }
 
-    /// A checkpoint without any block. One that is there already is kept under its name with `.old` behind it.
+    /// A checkpoint of one block. One that is there already is kept under its name with `.old` behind it.
     ///
     /// # Errors
-    /// The file cannot be written.
-    pub fn create(path: &Path, label: &Label) -> Result<Self, FileError> {
+    /// The file cannot be written; then there is none.
+    pub fn create(path: &Path, label: &Label, first: &Record) -> Result<Self, FileError> {
         Self::set_aside(path)?;
-        Self::write(path, label, |_| Ok(()))
+        Self::write(path, label, |writer| writer.write_all(&first.to_bytes()))
     }
 
     /// A checkpoint of a picture that is not finished anywhere, in the place of `last`, the one before.
@@ -153,20 +153,7 @@ impl Checkpoint {
         let unread = |source| CheckpointError::Read { path: path.to_owned(), source };
         let file = File::options().read(true).append(true).open(path).map_err(unread)?;
         let mut reader = BufReader::with_capacity(1 << 20, &file);
-        let found = read_head(&mut reader).map_err(unread)?;
-        let Some((found, mut length)) = found else {
-            return Err(CheckpointError::Damaged { path: path.to_owned() });
-        };
-        let mut differences = label.differences(&found);
-        if label.place() != found.place() {
-            let show = |Tile { x0, y0, x1, y1 }: Tile| format!("{x0},{y0},{x1},{y1}");
-            let (ours, theirs) = (show(label.place()), show(found.place()));
-            differences.push(format!("part: {ours} here, {theirs} there"));
-        }
-        if !differences.is_empty() {
-            let what = differences.join("; ");
-            return Err(CheckpointError::Differs { path: path.to_owned(), what });
-        }
+        let mut length = check_head(&mut reader, path, label)?;
         while let Some((entry, bytes)) = Entry::read(&mut reader, places).map_err(unread)? {
             length += bytes;
             put(entry);
@@ -174,6 +161,16 @@ impl Checkpoint {
         drop(reader);
         file.set_len(length).map_err(unread)?;
         Ok(Self { path: path.to_owned(), file, length })
+    }
+
+    /// Whether the file is a checkpoint of the picture that `label` describes.
+    ///
+    /// # Errors
+    /// The file cannot be read, is damaged, or is of another picture.
+    pub fn check(path: &Path, label: &Label) -> Result<(), CheckpointError> {
+        let unread = |source| CheckpointError::Read { path: path.to_owned(), source };
+        let mut reader = BufReader::new(File::open(path).map_err(unread)?);
+        check_head(&mut reader, path, label).map(drop)
     }
 
     /// Where it is.
@@ -228,6 +225,30 @@ fn head(label: &Label) -> Vec<u8> {
     let sum = checksum(&head);
     head.extend(sum);
     head
+}
+
+/// The length of a head that is of the picture that `label` describes.
+fn check_head(
+    reader: &mut (impl Read + Seek),
+    path: &Path,
+    label: &Label,
+) -> Result<u64, CheckpointError> {
+    let path = || path.to_owned();
+    let found =
+        read_head(reader).map_err(|source| CheckpointError::Read { path: path(), source })?;
+    let Some((found, length)) = found else {
+        return Err(CheckpointError::Damaged { path: path() });
+    };
+    let mut differences = label.differences(&found);
+    if label.place() != found.place() {
+        let show = |Tile { x0, y0, x1, y1 }: Tile| format!("{x0},{y0},{x1},{y1}");
+        let (ours, theirs) = (show(label.place()), show(found.place()));
+        differences.push(format!("part: {ours} here, {theirs} there"));
+    }
+    if !differences.is_empty() {
+        return Err(CheckpointError::Differs { path: path(), what: differences.join("; ") });
+    }
+    Ok(length)
 }
 
 /// The label in the head, and the head's length; none if it is damaged.

@@ -122,12 +122,19 @@ fn find(job: &Job, args: &RenderArgs, warnings: &Warnings) -> Result<(), Failure
         (false, true) => {
             note(args, &format!("{name}: there is no checkpoint; starting from the beginning"));
         }
-        (true, false) => {
-            warnings.add(format!(
+        (true, false) => warnings.add(match job.check_checkpoint() {
+            Ok(()) => format!(
                 "{name} is left from an interrupted render; --resume goes on from it (otherwise it is renamed to .old at \
                  the first new checkpoint)"
-            ));
-        }
+            ),
+            Err(CheckpointError::Differs { what, .. }) => format!(
+                "{name} is left from an interrupted render of another picture ({what}); it is renamed to .old at the \
+                 first new checkpoint"
+            ),
+            Err(_) => format!(
+                "{name} is in the way of a checkpoint; it is renamed to .old at the first one"
+            ),
+        }),
         (true, true) => match job.resume() {
             Ok(()) => note(args, &format!("going on from {name} {}", so_far(job))),
             Err(error @ CheckpointError::Read { .. }) => return Err(error.into()),

@@ -258,6 +258,7 @@ mod tests {
         assert_eq!(lines_of(ProgressMode::Plain, 0.8, &[(10.0, 90)]), expected);
     }
 
+    /// In pixels, of which there are a million, whatever the render counts in.
     #[test]
     fn json_lines_tell_the_end() {
         let reports = [(0.05, 10), (0.11, 20), (0.15, 100), (0.2, 90)];
@@ -265,8 +266,11 @@ mod tests {
         let parsed: Vec<serde_json::Value> =
             written.iter().map(|line| serde_json::from_str(line).expect("JSON")).collect();
         assert_eq!(parsed.len(), 2, "{written:?}");
-        assert_eq!((&parsed[0]["done"], &parsed[0]["total"]), (&20.into(), &100.into()));
-        assert_eq!((&parsed[1]["done"], &parsed[1]["seconds_left"]), (&100.into(), &0.0.into()));
+        assert_eq!((&parsed[0]["done"], &parsed[0]["total"]), (&200_000.into(), &1_000_000.into()));
+        assert_eq!(
+            (&parsed[1]["done"], &parsed[1]["seconds_left"]),
+            (&1_000_000.into(), &0.0.into())
+        );
     }
 
     #[test]

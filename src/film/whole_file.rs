@@ -47,7 +47,7 @@ pub enum FileError {
         source: io::Error,
     },
     /// Writing failed halfway.
-    #[error("{}: could not be written ({source}); what was there before is kept", path.display())]
+    #[error("{}: could not be written ({source}); a file that was there before is kept", path.display())]
     Write {
         /// The file as given.
         path: PathBuf,

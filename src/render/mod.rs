@@ -122,7 +122,7 @@ pub struct Rendering {
     /// The picture.
     pub film: Film,
     /// The picture's estimated error against the exact average over each pixel: root mean square of all channels, in levels of
-    /// 255; `None` by the classical rules, which estimate nothing.
+    /// 255; `None` for a single ray through a single pixel, and by the classical rules, which estimate nothing.
     pub estimated_rmse: Option<f64>,
     /// How it ended.
     pub outcome: Outcome,
@@ -146,7 +146,8 @@ impl Rendering {
     ) -> Self {
         let sum = Account::sum(accounts);
         Self {
-            estimated_rmse: Some(sum.rmse(film.pixels().len())),
+            // A ray through a pixel without neighbours tells nothing of its error.
+            estimated_rmse: (film.samples() != [1]).then(|| sum.rmse(film.pixels().len())),
             outcome: Outcome { unsettled: sum.unsettled as usize, ..outcome },
             rays: sum.rays,
             threads: effort.threads,

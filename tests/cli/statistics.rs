@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::Value;
 
 use super::{SMALL, assert_picture, assert_refused, render};
-use crate::program::{done, folder, json, names_in, read, run, whitted};
+use crate::program::{done, folder, json, names_in, read, run, said, whitted};
 
 /// The dotted names of all values that are not objects.
 fn keys(value: &Value, prefix: &str, into: &mut Vec<String>) {
@@ -14,6 +14,22 @@ fn keys(value: &Value, prefix: &str, into: &mut Vec<String>) {
             object.iter().for_each(|(key, value)| keys(value, &format!("{prefix}.{key}"), into));
         }
         _ => into.push(prefix.trim_start_matches('.').to_owned()),
+    }
+}
+
+#[test]
+fn an_error_that_nothing_tells_of_is_null() {
+    let folder = folder();
+    let rays = [("none", "1x1", false), ("none", "2x1", true), ("grid:2", "1x1", true)];
+    for (aa, size, is_known) in rays {
+        let output = run(folder.path(), &["render", "--aa", aa, "--size", size, "--stats", "-"]);
+        done(&output);
+        let estimate = &json(&output.stdout)["error"]["estimated_rmse"];
+        assert!(
+            estimate.is_number() == is_known && (is_known || estimate.is_null()),
+            "{aa} {size}"
+        );
+        assert_eq!(said(&output).contains("off by about"), is_known, "{}", said(&output));
     }
 }
 

@@ -4,9 +4,10 @@ use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
-use whitted::checkpoint::{Checkpoint, CheckpointError, Job};
+use whitted::Rgb;
+use whitted::checkpoint::{Checkpoint, CheckpointError, Job, Record};
 use whitted::film::{Film, Label};
-use whitted::render::{Effort, Progress, RenderOptions, Rendering, blocks, render_blocks};
+use whitted::render::{Account, Effort, Progress, RenderOptions, Rendering, blocks, render_blocks};
 use whitted::scene::{Scene, load_builtin};
 
 use super::{folder, run};
@@ -14,6 +15,12 @@ use super::{folder, run};
 fn options() -> RenderOptions {
     let aa = "adaptive:2,4096".parse().expect("a mode");
     RenderOptions { size: Some([200, 150]), aa, ..RenderOptions::default() }
+}
+
+/// A block of any picture.
+pub(crate) fn first() -> Record {
+    let (colors, samples) = (vec![Rgb::ONE; 64 * 64], vec![1; 64 * 64]);
+    Record { number: 0, colors, samples, account: Account::default() }
 }
 
 pub(crate) fn label(scene: &Scene, text: &str) -> Label {
@@ -117,10 +124,14 @@ fn a_checkpoint_of_another_picture_is_refused_with_what_differs() {
     let folder = folder();
     let path = folder.path().join("a.checkpoint");
     let scene = load_builtin("assignment").expect("built in");
-    Checkpoint::create(&path, &label(&scene, "aa=none depth=6")).expect("written");
+    let own = label(&scene, "aa=none depth=6");
+    Checkpoint::create(&path, &own, &first()).expect("written");
+    Checkpoint::check(&path, &own).expect("its own");
     let places = blocks(&scene, &options()).expect("whole");
     let open = |label: Label| {
         let refused = Checkpoint::open(&path, &label, &places, |_| ()).expect_err("another");
+        let checked = Checkpoint::check(&path, &label).expect_err("another");
+        assert_eq!(refused.to_string(), checked.to_string());
         let CheckpointError::Differs { what, .. } = refused else { panic!("{refused}") };
         what
     };

@@ -33,6 +33,21 @@ fn a_full_disk_costs_neither_the_checkpoint_nor_the_old_picture() {
 }
 
 #[test]
+fn a_disk_without_any_room_keeps_nothing_and_does_not_say_so() {
+    let folder = folder();
+    let program = env!("CARGO_BIN_EXE_whitted");
+    let line = format!(
+        "trap '' XFSZ; ulimit -f 1; exec {program} {} -o a.png --checkpoint 0.02",
+        PICTURE.join(" ")
+    );
+    let output = Command::new("sh").args(["-c", &line]).current_dir(folder.path()).output();
+    let output = output.expect("a shell");
+    refused(&output, 1, &["a.png: could not be written"]);
+    assert!(!said(&output).contains("--resume"), "{}", said(&output));
+    assert!(names_in(folder.path()).is_empty());
+}
+
+#[test]
 fn a_folder_deleted_on_the_way_is_made_again() {
     let folder = folder();
     let at = folder.path();

@@ -3,11 +3,12 @@
 use std::fs;
 use std::sync::atomic::AtomicBool;
 
-use whitted::checkpoint::Job;
+use whitted::checkpoint::{Checkpoint, Job};
 use whitted::render::{Goal, RenderOptions, blocks, render_blocks};
 use whitted::scene::load_builtin;
 
-use super::damage::{label, quiet};
+use super::damage::{first, label, quiet};
+use super::stop::{PICTURE, end, signal, until};
 use super::{done, folder, json, names_in, read, refused, run, said};
 
 const SMALL: [&str; 5] = ["render", "--size", "40x30", "-o", "a.png"];
@@ -17,9 +18,9 @@ fn a_checkpoint_that_is_in_the_way_is_a_warning_or_an_error() {
     let folder = folder();
     let at = folder.path();
     fs::write(at.join("a.png.checkpoint"), "left").expect("written");
-    let left = "a.png.checkpoint is left from an interrupted render";
+    let left = "a.png.checkpoint is in the way of a checkpoint";
     for more in [&["--strict"][..], &["--strict", "--quiet"], &["--strict", "--progress", "json"]] {
-        refused(&run(at, &[&SMALL[..], more].concat()), 4, &["error: ", left, "--resume"]);
+        refused(&run(at, &[&SMALL[..], more].concat()), 4, &["error: ", left, ".old"]);
         assert_eq!(names_in(at), ["a.png.checkpoint"], "nothing is rendered");
     }
     assert_eq!(read(at, "a.png.checkpoint"), b"left");
@@ -33,6 +34,24 @@ fn a_checkpoint_that_is_in_the_way_is_a_warning_or_an_error() {
     let output = run(at, &[&SMALL[..], &["--quiet"]].concat());
     done(&output);
     assert_eq!(said(&output), "");
+}
+
+#[test]
+fn a_checkpoint_in_the_way_is_told_from_that_of_another_picture() {
+    let folder = folder();
+    let at = folder.path();
+    let scene = load_builtin("assignment").expect("built in");
+    let path = at.join("a.png.checkpoint");
+    Checkpoint::create(&path, &label(&scene, "aa=none depth=6"), &first()).expect("written");
+    let output = run(at, &[&SMALL[..], &["--strict"]].concat());
+    refused(&output, 4, &["of another picture (", "size: 40x30 here, 200x150 there", ".old"]);
+    assert!(!said(&output).contains("--resume"), "{}", said(&output));
+    fs::remove_file(&path).expect("there");
+    let child = until(at, 0.3, &["-o", "a.png", "--checkpoint", "0.02"]);
+    signal(&child, "-INT");
+    refused(&end(child), 130, &["checkpoint: a.png.checkpoint"]);
+    let output = run(at, &[&PICTURE[..], &["-o", "a.png", "--strict"]].concat());
+    refused(&output, 4, &["is left from an interrupted render", "--resume"]);
 }
 
 /// Oracle: the first render.

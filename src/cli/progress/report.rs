@@ -59,11 +59,11 @@ pub(super) fn plain_line(report: &Report) -> String {
     format!("{:.0} % after {}{left}, {rate}", 100.0 * report.share, duration(report.elapsed))
 }
 
-/// A line for programs.
+/// A line for programs; what is done is in pixels.
 pub(super) fn json_line(report: &Report) -> String {
     serde_json::json!({
-        "done": report.done,
-        "total": report.total,
+        "done": (report.share * report.pixels).round() as u64,
+        "total": report.pixels as u64,
         "seconds": report.elapsed,
         "seconds_left": report.seconds_left(),
         "pixels_per_second": report.rate(),
