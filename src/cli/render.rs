@@ -229,6 +229,7 @@ fn summary(
     let error = estimated.into_iter().chain(measured).collect::<String>();
     let unsettled = match rendering.outcome.unsettled {
         0 => String::new(),
+        1 => " (1 pixel still above the limit with all its rays)".to_owned(),
         pixels => format!(" ({pixels} pixels still above the limit with all their rays)"),
     };
     let Rendering { film, rays, threads, depth, seconds, .. } = rendering;

@@ -39,7 +39,8 @@ fn an_error_is_aimed_at_measured_and_missed_with_a_warning() {
     assert!(said(&output).starts_with("warning: --max-error 0.5 is not reached"));
     assert!(said(&output).contains("allow more, such as --aa adaptive:0,4096\n"));
     for (error, aa, advice) in [
-        ("0.001", "adaptive:0,5000", "allow more, such as --aa adaptive:0,20000\n"),
+        ("0.01", "adaptive:0,5000", "allow more, such as --aa adaptive:0,80000\n"),
+        ("1e-300", "adaptive:0,64", "--max-error 1e-300 is not reached"),
         ("0.0001", "adaptive:0,400000", "allow more, such as --aa adaptive:0,1048576\n"),
         ("0.00001", "adaptive:0,1048576", "allow a larger one, such as --max-error 0."),
         ("0", "adaptive:0,16", "allow a larger one, such as --max-error "),
@@ -51,6 +52,10 @@ fn an_error_is_aimed_at_measured_and_missed_with_a_warning() {
         assert!(said(&output).contains(advice), "{}", said(&output));
         assert!(!said(&output).contains(" 0.0000 squared"), "{}", said(&output));
     }
+    let advised = ["--crop", "14,15,15,16", "--max-error", "0.01", "--aa", "adaptive:0,80000"];
+    let output = run(folder.path(), &[&small[..], &advised].concat());
+    done(&output);
+    assert!(!said(&output).contains("warning"), "{}", said(&output));
     let output = run(folder.path(), &["render", "--size", "41x30", "--reference", "truth.png"]);
     assert_refused(&output, 2, &["--reference", "41x30", "40x30"]);
     assert_refused(&run(folder.path(), &["render", "--reference", "no.png"]), 1, &["no.png"]);
