@@ -70,7 +70,7 @@ impl Path {
 #[inline(always)]
 pub(super) fn light_word(light: &Light, passed: u32) -> u32 {
     let position = light.position.to_array().map(f64::to_bits);
-    position.into_iter().fold(passed, |word, bits| word.rotate_left(7) ^ (bits >> 21) as u32)
+    position.into_iter().fold(passed, |word, bits| hash(word ^ (bits ^ bits >> 32) as u32))
 }
 
 /// A hash of 32 bits in which every bit depends on all.
@@ -83,4 +83,32 @@ pub(super) fn hash(mut x: u32) -> u32 {
     x ^= x >> 15;
     x = x.wrapping_mul(0x846c_a68b);
     x ^ (x >> 16)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::color::Rgb;
+
+    /// Where one light ends and another begins, only their words differ: of mirrored places, of those that are far away in
+    /// the same direction, of those with their coordinates exchanged.
+    #[test]
+    fn lights_in_different_places_have_different_words() {
+        let numbers = [-4.0, -1.125, -1.0, -0.5, 0.0, 0.5, 1.0, 1.125, 2.0, 4.0, 1e3, 1e-300];
+        let mut words = Vec::new();
+        for x in numbers {
+            for y in numbers {
+                for z in numbers {
+                    let light = Light { position: DVec3::new(x, y, z), intensity: Rgb::ONE };
+                    words.push(light_word(&light, 0));
+                }
+            }
+        }
+        let count = words.len();
+        words.sort_unstable();
+        words.dedup();
+        assert_eq!(words.len(), count);
+    }
 }
