@@ -30,7 +30,7 @@ const PROBES: u32 = 16;
 /// twice.
 const SMALLEST: u32 = 4;
 const SMALLEST_ADAPTIVE: u32 = 64;
-const LARGEST_ADAPTIVE: u32 = 256;
+const LARGEST_ADAPTIVE: u32 = 128;
 const LARGEST: u32 = 1024;
 
 /// A finished block of a picture.
@@ -232,7 +232,7 @@ mod tests {
             ("grid:3", 3.5, 256),
             ("grid:64", 3.5, 16),
             ("sobol:1048576", 3.5, 4),
-            ("adaptive", 3.5, 256),
+            ("adaptive", 3.5, 128),
             ("adaptive", 100.0, 64),
             ("adaptive:1,1024", 3.5, 64),
             ("adaptive:1,1000000", 3.5, 64),
