@@ -69,7 +69,7 @@ impl Camera {
                 return Err(CameraError::NotFinite { name, value });
             }
         }
-        let (sight, _) = scale::normalized(look_at - eye);
+        let (sight, _) = scale::normalized(look_at * 0.5 - eye * 0.5);
         let forward = sight.try_normalize().ok_or(CameraError::NoDirection { eye })?;
         let (side, _) = scale::normalized(forward.cross(scale::normalized(up).0));
         let right = side.try_normalize().ok_or(CameraError::NoUp { up })?;

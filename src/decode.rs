@@ -48,6 +48,5 @@ mod tests {
         let error = decode::<()>(|| [0; 3][..].get(5).map(|_| Ok(())).expect("a panic"));
         assert!(error.expect_err("a panic").to_string().contains("fails"));
         assert!(!DECODES.get());
-        assert!(catch_unwind(|| panic!("told as ever")).is_err());
     }
 }

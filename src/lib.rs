@@ -15,10 +15,11 @@
 //! reflected and refracted rays, each knowing the surface it leaves, join the tracer's work list.
 //!
 //! What comes back is an [`aa::Sample`]. The samples of a pixel are averaged in linear light, the finished
-//! [`render::Block`] is copied to the film ([`film::Film::blit`]), and the film is encoded at the very end. A
+//! [`render::Block`] is put on the film ([`film::Film::put`]), and the film is encoded at the very end. A
 //! [`checkpoint`] keeps the finished blocks of a render that is stopped.
 //!
-//! A [`scene::Scene`] is made from a [`scene::SceneDesc`], which is plain data, read from TOML.
+//! A [`scene::Scene`] is made from [`scene::Parts`]: those of a [`scene::SceneDesc`], which is plain data read from TOML, of
+//! an NFF file or of a model.
 //!
 //! # A picture
 //!

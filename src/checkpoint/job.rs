@@ -247,7 +247,7 @@ impl<'a> Job<'a> {
         look(&self.state().film)
     }
 
-    /// The picture; the errors of single pixels were not kept.
+    /// The picture.
     pub fn into_rendering(self, effort: &Effort) -> Rendering {
         let state = self.state.into_inner().unwrap_or_else(PoisonError::into_inner);
         let State { film, accounts, outcome, .. } = state;

@@ -29,7 +29,8 @@ impl Difference {
     }
 }
 
-/// The structural similarity of two pictures of the same size, from -1 to 1, which only equal pictures reach.
+/// The structural similarity of two pictures of the same size, from -1 to 1, which only pictures of equal luma
+/// reach.
 ///
 /// # Errors
 ///
@@ -192,7 +193,7 @@ mod tests {
     /// Oracle: limits that follow from the definition, and a closed form for two constant pictures: they do not vary, so that the factor
     /// of contrast and structure is c₂/c₂, and (2·100·120 + c₁)/(100² + 120² + c₁) is left.
     #[test]
-    fn similarity_is_one_for_equal_pictures_only() {
+    fn similarity_is_one_for_equal_luma_only() {
         let wave = |phase: u32| {
             RgbImage::from_fn(40, 30, |x, y| {
                 Rgb([(127.0 + 100.0 * f64::from(x + phase + y).sin()) as u8; 3])
@@ -204,6 +205,8 @@ mod tests {
         let grey = |level| RgbImage::from_pixel(20, 9, Rgb([level; 3]));
         let expected = (2.0 * 12_000.0 + 6.5025) / (10_000.0 + 14_400.0 + 6.5025);
         assert!((ssim(&grey(100), &grey(120)) - expected).abs() < 1e-9);
+        let green = RgbImage::from_pixel(20, 9, Rgb([111, 101, 66])); // 0.299 R + 0.587 G + 0.114 B is 100
+        assert!((ssim(&grey(100), &green) - 1.0).abs() < 1e-6);
     }
 
     #[test]

@@ -49,7 +49,8 @@ impl Film {
     ///
     /// # Panics
     ///
-    /// If the film needs more memory than the machine can give; [`Film::memory_bytes`] tells first.
+    /// If the film needs more memory than can be addressed. If it needs more than the machine can give, the program is
+    /// aborted; [`Film::memory_bytes`] tells first.
     pub fn new(width: u32, height: u32) -> Self {
         let count = usize::try_from(u64::from(width) * u64::from(height))
             .expect("a film that memory can address");

@@ -9,7 +9,8 @@ const REACH: usize = 5;
 const C1: f64 = 6.5025;
 const C2: f64 = 58.5225;
 
-/// The structural similarity of two pictures of one size, from -1 to 1, which only equal pictures reach.
+/// The structural similarity of two pictures of one size, from -1 to 1, which only pictures of equal
+/// luma reach.
 ///
 /// The mean over all pixels of (2 μ₁μ₂ + c₁)(2 σ₁₂ + c₂) / ((μ₁² + μ₂² + c₁)(σ₁² + σ₂² + c₂)) on the luma (Rec. 601) of
 /// the levels, within a Gaussian window of 11 × 11 pixels, cut off at the pictures' edges.

@@ -32,7 +32,8 @@ impl Polygon {
             if has_area { ShapeError::NoSide } else { error }
         })?;
         let polygon = Self { vertices, normal };
-        polygon.check_outline()?;
+        let reach = polygon.bounds().largest_coordinate();
+        polygon.mapped(&Similarity::scaling(reach)).check_outline()?;
         Ok(polygon)
     }
 
@@ -55,11 +56,7 @@ impl Polygon {
             turned += turn.atan2(e1.dot(e2));
         }
         // A convex outline turns once; a star turns more often.
-        if turned < 1.5 * std::f64::consts::TAU {
-            Ok(())
-        } else {
-            Err(ShapeError::NotConvex { index: 0 })
-        }
+        if turned < 1.5 * std::f64::consts::TAU { Ok(()) } else { Err(ShapeError::TurnsTwice) }
     }
 
     pub(crate) fn bounds(&self) -> Bounds {

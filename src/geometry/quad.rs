@@ -32,6 +32,9 @@ impl Quad {
     /// # Errors
     /// A corner or edges that are not finite, or edges on one line.
     pub fn try_new(corner: DVec3, edge1: DVec3, edge2: DVec3) -> Result<Self, ShapeError> {
+        for (name, value) in [("corner", corner), ("edge1", edge1), ("edge2", edge2)] {
+            ShapeError::check_point(name, value)?;
+        }
         let vertices = [corner, corner + edge1, corner + edge1 + edge2, corner + edge2];
         Ok(Self::new(vertices, flat::unit_normal(&vertices)?))
     }

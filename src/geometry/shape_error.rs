@@ -53,6 +53,9 @@ pub enum ShapeError {
         /// The corner, counted from 0.
         index: usize,
     },
+    /// A polygon's outline is that of a star.
+    #[error("the outline of the polygon goes round more than once; give the corners in order")]
+    TurnsTwice,
     /// A polygon is not convex.
     #[error("the polygon is not convex at corner {index} (corners count from 0)")]
     NotConvex {

@@ -96,7 +96,7 @@ impl CertainLanes {
     }
 }
 
-/// The same for some `lanes` of rays: the parameters, or NaN, and no second ones.
+/// As [`Triangle::crossings`], to the bit, for some `lanes` of rays: the parameters, or NaN, and no second ones.
 #[inline(always)]
 pub(crate) fn cross_lanes(
     corners: &[DVec3; 3],

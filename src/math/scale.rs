@@ -17,7 +17,7 @@ pub fn power_of_two(e: i32) -> f64 {
     f64::from_bits(biased << 52)
 }
 
-/// `v · 2^e` for any `e`, rounded only where the result is subnormal.
+/// `v · 2^e` for `e` from −2044 to 2046, rounded only where the result is subnormal.
 pub fn scaled(v: DVec3, e: i32) -> DVec3 {
     let half = e / 2;
     v * power_of_two(half) * power_of_two(e - half)
@@ -48,7 +48,7 @@ pub(crate) fn largest(v: DVec3) -> f64 {
     if largest > size.z { largest } else { size.z }
 }
 
-/// The unit vector along `v`, or `other` if `v` is zero, subnormal or not finite; without a branch, for loops over
+/// The unit vector along `v`, or `other` if the largest component is below 2^−1022, from 2^1023 up or infinite; without a branch, for loops over
 /// lanes.
 #[inline(always)]
 pub(crate) fn unit_or(v: DVec3, other: DVec3) -> DVec3 {

@@ -24,14 +24,17 @@ const MOST_RAYS: f64 = (1 << 24) as f64;
 /// So many rays of all kinds follow from a camera ray, itself included, in most scenes. Blocks are no larger where it
 /// is less.
 const USUAL: f64 = 4.0;
-/// Camera rays, in a row and in a column, that tell how many it is.
+/// Camera rays, in a row and in a column, that tell how many it is: at most, and one for so many pixels.
 const PROBES: u32 = 16;
+const PIXELS_OF_PROBE: u32 = 16;
 /// The sides of blocks, in pixels. Adaptive blocks share no rays with their neighbours, so small ones trace many places
 /// twice.
 const SMALLEST: u32 = 4;
 const SMALLEST_ADAPTIVE: u32 = 64;
 const LARGEST_ADAPTIVE: u32 = 128;
 const LARGEST: u32 = 1024;
+/// A picture has no more blocks than this, however long they take.
+const MOST_BLOCKS: u64 = 1 << 20;
 
 /// A finished block of a picture.
 #[derive(Clone, Debug)]
@@ -146,7 +149,8 @@ fn rays_of_one(scene: &Scene, options: &RenderOptions, part: &Tile) -> f64 {
     let mut tracer = Tracer::new(scene, options.depth.unwrap_or(scene.depth()), None, false);
     let corner = DVec2::new(part.x0.into(), part.y0.into());
     let size = DVec2::new(part.width().into(), part.height().into());
-    let dirs = grid_places(DVec2::ZERO, PROBES).map(|place| view.direction(corner + place * size));
+    let side = ((size.x * size.y).sqrt() as u32 / PIXELS_OF_PROBE).clamp(1, PROBES);
+    let dirs = grid_places(DVec2::ZERO, side).map(|place| view.direction(corner + place * size));
     let dirs: Vec<DVec3> = dirs.collect();
     tracer.trace(view.eye(), dirs.iter().copied(), &mut Vec::new());
     tracer.take_counts().all() as f64 / dirs.len() as f64
@@ -156,9 +160,15 @@ fn rays_of_one(scene: &Scene, options: &RenderOptions, part: &Tile) -> f64 {
 fn cut(part: &Tile, aa: AntiAliasing, rays: f64) -> Vec<Tile> {
     let side = |budget: f64, each: u32, least: u32, most: u32| {
         let of_pixel = f64::from(each) * rays.max(USUAL);
-        let fits = |side: &u32| f64::from(side * side) * of_pixel <= budget;
-        let sides = std::iter::successors(Some(most), |side| Some(side / 2));
-        sides.take_while(|side| *side > least).find(fits).unwrap_or(least)
+        let count = |side: u32| {
+            u64::from(part.width().div_ceil(side)) * u64::from(part.height().div_ceil(side))
+        };
+        let is_enough = |side: u32| f64::from(side * side) * of_pixel <= budget;
+        let mut side = most;
+        while side > least && !is_enough(side) && count(side / 2) <= MOST_BLOCKS {
+            side /= 2;
+        }
+        side
     };
     let side = match aa {
         AntiAliasing::None => side(RAYS, 1, SMALLEST, LARGEST),
@@ -254,6 +264,15 @@ mod tests {
                 (part.x0..part.x1).contains(&x) && (part.y0..part.y1).contains(&y)
             };
             assert!(cover.iter().enumerate().all(|(k, n)| *n == i32::from(inside(k))), "{mode}");
+        }
+    }
+
+    #[test]
+    fn even_the_largest_picture_has_no_more_than_a_million_blocks() {
+        let part = Tile { x0: 0, y0: 0, x1: 30_000, y1: 30_000 };
+        for rays in [4.0, 1e9] {
+            let blocks = cut(&part, AntiAliasing::Sequence { count: 1 << 20 }, rays);
+            assert!((MOST_BLOCKS / 4..=MOST_BLOCKS).contains(&(blocks.len() as u64)));
         }
     }
 

@@ -41,7 +41,7 @@ pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// How far all the waves together are.
+/// How far all workers together are.
 pub(super) struct Meter<'a> {
     progress: &'a (dyn Fn(Progress) + Sync),
     state: Mutex<Progress>,

@@ -110,9 +110,9 @@ pub struct Outcome {
 /// How far a render is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
-    /// Pixels done.
+    /// What is done, in units of which each pixel has as many.
     pub done: u64,
-    /// Pixels in all.
+    /// What there is to do.
     pub total: u64,
 }
 

@@ -120,6 +120,14 @@ pub enum SceneError {
         /// The material.
         material: String,
     },
+    /// The floor under a model alone cannot be made.
+    #[error("{path}: there can be no floor under the model, which is too large ({source})")]
+    Floor {
+        /// The model's file.
+        path: String,
+        /// Why not.
+        source: ShapeError,
+    },
     /// A shape cannot be made.
     #[error("object {object} ({kind}): {source}")]
     Shape {

@@ -79,7 +79,8 @@ impl Sources {
 
 /// A scene that is not yet built, and what its files say besides.
 pub(super) struct Gathered {
-    name: String,
+    /// That of the scene, after which its picture is named.
+    pub(super) name: String,
     pub(super) parts: Parts,
     pub(super) names: Names,
     /// The entities of an NFF file.
@@ -131,8 +132,7 @@ fn found(name: &str, options: &LoadOptions) -> Result<Gathered, SceneError> {
     let is_described =
         name == STANDARD_INPUT || matches!(kind.as_deref(), Some("obj" | "toml" | "nff"));
     if is_described && options.objects.is_some() {
-        let known = "spheres".to_owned();
-        return Err(SceneError::NotGenerated { name: name.to_owned(), known });
+        return Err(builtin::not_generated(name));
     }
     let (parts, names) = match kind.as_deref() {
         _ if name == STANDARD_INPUT => {
@@ -193,11 +193,8 @@ fn model_alone(
     let mut model = obj::load_model(path)?;
     sources.take_from(&mut model);
     let up = options.up.filter(|up| up.is_finite()).unwrap_or(DVec3::Y);
-    stage::stage(model, up, options.fov).map_err(|source| SceneError::Shape {
-        object: 1,
-        kind: "floor",
-        source,
-    })
+    stage::stage(model, up, options.fov)
+        .map_err(|source| SceneError::Floor { path: path.display().to_string(), source })
 }
 
 /// The parts of an NFF scene.

@@ -1,7 +1,5 @@
 //! What a scene holds, for whoever asks about it rather than renders it.
 
-use std::path::Path;
-
 use super::{
     Parts, SceneError, Warning,
     nff::NffCounts,
@@ -62,9 +60,8 @@ pub fn inspect_scene(name: &str) -> Result<SceneReport, SceneError> {
     let found = gather(name, &LoadOptions::default())?;
     let parts = found.parts;
     parts.camera.camera()?;
-    let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
     Ok(SceneReport {
-        name: stem.into_owned(),
+        name: found.name,
         resolution: parts.resolution,
         depth: parts.depth,
         camera: parts.camera,

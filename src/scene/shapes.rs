@@ -40,7 +40,7 @@ pub(super) fn make_shapes(desc: &ShapeDesc) -> (&'static str, Result<Vec<Shape>,
         ShapeDesc::Polygon { vertices } => {
             let vertices: Vec<DVec3> = vertices.iter().copied().map(v).collect();
             let made = match Polygon::try_new(vertices.clone()) {
-                Err(ShapeError::NotConvex { .. }) => cut(&vertices),
+                Err(ShapeError::NotConvex { .. } | ShapeError::TurnsTwice) => cut(&vertices),
                 made => one(made.map(Shape::from)),
             };
             ("polygon", made)

@@ -107,11 +107,15 @@ fn fitted(bounds: &Bounds, up: DVec3, vertical_fov: f64) -> CameraPlan {
     CameraPlan { eye: center + back * distance, look_at: center, up, vertical_fov }
 }
 
-/// A place for a model in a scene: on the floor in front of the middle of the picture, where nothing else stands.
+/// A place for a model in a scene: on the floor in front of the middle of the picture, where nothing else
+/// stands; at the origin, as large as it is, where there is nothing at all.
 pub(super) fn free_place(parts: &Parts, size_of_model: DVec3, size: Option<f64>) -> (DVec3, f64) {
     let bounds = parts.bounds();
-    let extent = bounds.extent().max_element();
     let largest = size_of_model.max_element();
+    if bounds.is_empty() {
+        return (DVec3::ZERO, size.map_or(1.0, |size| size / largest));
+    }
+    let extent = bounds.extent().max_element();
     let scale = size.unwrap_or(extent / 16.0) / largest;
     let size = size_of_model * scale;
     let CameraPlan { eye, look_at, vertical_fov, .. } = parts.camera;

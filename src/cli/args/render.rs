@@ -44,7 +44,7 @@ pub(crate) struct RenderArgs {
     /// Anti-aliasing: none (one ray per pixel), grid:N (N x N rays per pixel), or adaptive[:ERROR[,MAX]] (rays where
     /// the picture needs them, until a pixel's estimated error is below ERROR levels of 255 or it has MAX rays; 4 and
     /// 64 by default; a MAX of 2 or 3 is as 1; with --max-error or --time-limit ERROR is ignored, and MAX is 1024
-    /// without --aa) [default: adaptive]
+    /// without --aa) [default: the scene's own, or adaptive]
     #[arg(long, value_name = "MODE", help_heading = "Quality")]
     pub(crate) aa: Option<AntiAliasing>,
 

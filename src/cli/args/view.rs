@@ -39,7 +39,7 @@ pub(crate) struct ViewArgs {
     #[arg(long, value_name = "WxH", value_parser = parse_size, allow_hyphen_values = true, help_heading = "Picture")]
     pub(crate) size: Option<[u32; 2]>,
 
-    /// Anti-aliasing of the last pass, as for `whitted render` [default: adaptive]
+    /// Anti-aliasing of the last pass, as for `whitted render` [default: the scene's own, or adaptive]
     #[arg(long, value_name = "MODE", help_heading = "Quality")]
     pub(crate) aa: Option<AntiAliasing>,
 

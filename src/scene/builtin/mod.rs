@@ -70,13 +70,16 @@ impl Builtin {
         match (self.generator, objects) {
             (Some(generator), objects) => generator(objects.unwrap_or(generators::DEFAULT_OBJECTS)),
             (None, None) => Parts::try_new(&self.desc()?, &mut picture),
-            (None, Some(_)) => {
-                let generated = BUILTINS.iter().filter(|builtin| builtin.generator.is_some());
-                let known = generated.map(|builtin| builtin.name).collect::<Vec<_>>().join(", ");
-                Err(SceneError::NotGenerated { name: self.name.to_owned(), known })
-            }
+            (None, Some(_)) => Err(not_generated(self.name)),
         }
     }
+}
+
+/// What is wrong with asking the scene `name` for a number of objects.
+pub(super) fn not_generated(name: &str) -> SceneError {
+    let generated = BUILTINS.iter().filter(|builtin| builtin.generator.is_some());
+    let known = generated.map(|builtin| builtin.name).collect::<Vec<_>>().join(", ");
+    SceneError::NotGenerated { name: name.to_owned(), known }
 }
 
 /// The built-in scene of this name.

@@ -49,7 +49,9 @@ pub(super) fn unmet(value: &DeValue, kind: Kind) -> Option<String> {
         Kind::Whole(least) if whole(value).is_none_or(|x| x < least) => {
             Some(format!("a whole number from {least} to {}", u32::MAX))
         }
-        Kind::Text if value.as_str().is_none_or(str::is_empty) => Some("text".to_owned()),
+        Kind::Text if value.as_str().is_none_or(str::is_empty) => {
+            Some("text that is not empty".to_owned())
+        }
         Kind::Color if !is_vector(value, |x| (0.0..=1.0).contains(&x)) => {
             Some("three channels from 0 to 1, such as [1, 0.5, 0]".to_owned())
         }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{NffCounts, NffError, NffScene, read::Reader, soup::Soup};
 use crate::{
-    color::{Rgb, from_srgb, srgb_to_linear},
+    color::{Rgb, from_srgb},
     geometry::{Cone, Cylinder, Ends, Inward, Polygon, Shape, Sphere, triangulate::Triangulator},
     light::Light,
     material::Material,
@@ -296,8 +296,5 @@ fn color(r: &mut Reader, name: &str) -> Result<Rgb, String> {
     if display.min_element() < 0.0 {
         return Err(format!("`{name}` is ({display}), but no channel may be negative"));
     }
-    if display.max_element() <= 1.0 {
-        return Ok(from_srgb(display.to_array()));
-    }
-    Ok(Rgb::from_array(display.to_array().map(|c| srgb_to_linear(c) as f32)))
+    Ok(from_srgb(display.to_array()))
 }

@@ -53,7 +53,7 @@ pub enum NffError {
 pub struct NffCounts {
     /// Spheres.
     pub spheres: u32,
-    /// Cones and cylinders.
+    /// Cones, cut ones included.
     pub cones: u32,
     /// Cylinders.
     pub cylinders: u32,

@@ -3,12 +3,12 @@
 //! | MTL | becomes |
 //! | --- | --- |
 //! | `Kd`, `map_Kd` | the colour; a picture takes the place of `Kd`, which many exporters leave at a default beside it |
-//! | `Ka` | nothing: the ambient weight is 0.2 and the diffuse 0.8, as everywhere in this program |
+//! | `Ka` | nothing: the ambient weight is 0.2 and the diffuse 0.8 |
 //! | `Ks`, `Ns` | the weight of the highlight (the mean of the linear channels; white) and Phong's exponent, for `illum` 2 and up |
 //! | `illum` 0 | the colour by itself, without light: ambient 1, diffuse 0 |
 //! | `illum` 3, 4, 5, 6, 7, 8, 9 | a mirror image with the weight of `Ks` |
-//! | `d` (or 1 − `Tr`; `d` wins) | the opacity; 1 − `d` is the weight of what passes, straight on |
-//! | `illum` 4, 6, 7, 9 | glass: what passes is bent by `Ni`, and with `Tf` it is filtered |
+//! | `d` (or 1 − `Tr`; `d` wins) | the opacity; 1 − `d` is the weight of what passes, straight on, filtered by `Tf` |
+//! | `illum` 4, 6, 7, 9 | glass: what passes is bent by `Ni`; if `d` says nothing of it, as much passes as `Tf` says, and the opacity is 0.15 |
 //!
 //! Fresnel's terms of `illum` 5 and 7 are not Whitted's and left out. Colours are sRGB display values.
 

@@ -31,7 +31,7 @@ pub struct ModelReport {
     pub open_examples: Vec<OpenEdge>,
     /// Triangles in the tree: what is left after repairs.
     pub kept_triangles: usize,
-    /// Objects, groups, points and polylines.
+    /// Objects.
     pub objects: usize,
     /// Groups.
     pub groups: usize,

@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use whitted::accel::{Accel, brute};
+use whitted::camera::Camera;
 use whitted::geometry::{
     Bounds, Cone, Cylinder, Ends, Polygon, Quad, Ray, Shape, ShapeError, Similarity, Sphere,
     Surface, Triangle, reflect, refract, tetrahedron::tetrahedron,
@@ -188,6 +189,9 @@ fn degenerate_shapes_are_refused_by_name() {
     let line = [zero, one, one * 2.0];
     let bent = vec![zero, DVec3::X, DVec3::new(1.0, 1.0, 0.1), DVec3::Y];
     let dart = vec![zero, DVec3::new(0.2, 0.2, 0.0), DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
+    let point =
+        |k: u32| DVec2::from_angle(f64::from(2 * k) * std::f64::consts::TAU / 5.0).extend(0.0);
+    let star = (0..5).map(point).collect();
     let cases = [
         (text(Sphere::try_new(zero, 0.0).err()), "`radius` is 0"),
         (text(Sphere::try_new(zero, -1.0).err()), "`radius` is -1"),
@@ -199,17 +203,36 @@ fn degenerate_shapes_are_refused_by_name() {
         (text(Cone::try_new(zero, nan, 1.0, open).err()), "`apex` is ([0, NaN, 0])"),
         (text(Quad::try_new(zero, one, one * 2.0).err()), "on one line"),
         (text(Quad::try_new(zero, zero, one).err()), "on one line"),
-        (text(Quad::try_new(nan, DVec3::X, DVec3::Y).err()), "`vertices`"),
+        (text(Quad::try_new(nan, DVec3::X, DVec3::Y).err()), "`corner` is ([0, NaN, 0])"),
         (text(Triangle::try_new(line).err()), "on one line"),
         (text(Triangle::try_new([zero, zero, zero]).err()), "on one line"),
         (text(Polygon::try_new(line[..2].to_vec()).err()), "has 2 corners"),
         (text(Polygon::try_new(bent).err()), "off the plane"),
         (text(Polygon::try_new(dart).err()), "not convex at corner"),
+        (text(Polygon::try_new(star).err()), "goes round more than once"),
         (text(tetrahedron(zero, 0.0, 0.0).err()), "`edge` is 0"),
     ];
     for (message, part) in cases {
         assert!(message.contains(part), "{message:?} for {part:?}");
     }
+}
+
+/// Products of three lengths leave the range of numbers long before lengths do.
+#[test]
+fn polygons_and_lines_of_sight_may_have_any_length() {
+    for size in [1e-300, 1e-100, 1.0, 1e100, 1e160, 1e300] {
+        let pentagon = (0..5).map(|k| {
+            DVec2::from_angle(f64::from(k) * std::f64::consts::TAU / 5.0).extend(0.0) * size
+        });
+        Polygon::try_new(pentagon.collect()).expect("convex");
+        let dart = [[0.0, 0.0], [0.2, 0.2], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let dart = dart.map(|[x, y]| DVec3::new(x, y, 0.0) * size);
+        let refused = Polygon::try_new(dart.to_vec()).expect_err("not convex");
+        assert!(matches!(refused, ShapeError::NotConvex { index: 1 }), "{size}: {refused}");
+    }
+    let far = DVec3::X * f64::MAX;
+    let camera = Camera::try_new(-far, far, DVec3::Y, 40.0).expect("apart");
+    assert_eq!(camera.view(2, 2).direction(DVec2::ONE).normalize(), DVec3::X);
 }
 
 /// A surface that holds coordinates holds them in the unit square.
