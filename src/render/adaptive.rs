@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Outcome, Picture,
+    blocks::rmse,
     crew::{Crew, Sampler, in_turn, lock, trace_centers},
     demand::Demand,
     known::{APRON, Known},
@@ -223,7 +224,7 @@ impl Adaptive {
 
     /// The estimated error: root mean square of all channels, in levels of 255.
     pub(super) fn estimated_rmse(&self) -> f64 {
-        (self.squared_error() / self.area.len().max(1) as f64).sqrt()
+        rmse(self.squared_error(), self.area.len())
     }
 
     /// The estimated squared error, summed over the pixels.

@@ -67,7 +67,7 @@ pub struct Account {
 impl Account {
     /// The estimated error of so many pixels: root mean square of all channels, in levels of 255.
     pub fn rmse(&self, pixels: usize) -> f64 {
-        (self.squared_error / pixels.max(1) as f64).sqrt()
+        rmse(self.squared_error, pixels)
     }
 
     /// The sum, in the order given.
@@ -78,6 +78,11 @@ impl Account {
             unsettled: sum.unsettled + one.unsettled,
         })
     }
+}
+
+/// The root mean square of so many pixels' errors whose squares add up to this.
+pub(super) fn rmse(squared_error: f64, pixels: usize) -> f64 {
+    (squared_error / pixels.max(1) as f64).sqrt()
 }
 
 /// Where finished blocks go. All is called from the worker threads.

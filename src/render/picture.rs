@@ -5,6 +5,7 @@ use std::{sync::Mutex, time::Instant};
 use super::{
     Account, Block, Goal, Outcome, Progress, RayCounts, Sink, Unfinished,
     adaptive::Adaptive,
+    blocks::rmse,
     crew::{Crew, Meter, Sampler},
     plain,
     plane::Area,
@@ -29,7 +30,7 @@ pub struct Picture {
 impl Picture {
     /// The estimated error: root mean square of all channels, in levels of 255.
     pub fn estimated_rmse(&self) -> f64 {
-        (self.squared_error / self.colors.len().max(1) as f64).sqrt()
+        rmse(self.squared_error, self.colors.len())
     }
 
     pub(super) fn into_block(self, number: usize, place: Tile, rays: RayCounts) -> Block {
