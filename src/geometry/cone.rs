@@ -95,6 +95,11 @@ impl Cone {
         self.radius
     }
 
+    /// The middle of where it ends towards the apex, and the radius there.
+    pub(crate) fn top(&self) -> (DVec3, f64) {
+        (self.apex - self.frame.axis() * self.cut, self.radius * (self.cut / self.height))
+    }
+
     /// Whether it is closed.
     pub fn ends(&self) -> Ends {
         self.ends
@@ -103,7 +108,7 @@ impl Cone {
     pub(crate) fn bounds(&self) -> Bounds {
         let reach = disc_reach(self.frame.axis()) * self.radius;
         let upper = reach * (self.cut / self.height);
-        let top = self.apex - self.frame.axis() * self.cut;
+        let (top, _) = self.top();
         Bounds::of_points([self.base - reach, self.base + reach, top - upper, top + upper])
     }
 

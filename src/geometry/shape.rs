@@ -279,12 +279,16 @@ impl Shape {
         }
     }
 
-    /// The axis and radius of a round shape, which is all within that radius of its axis; flat shapes have none.
-    pub(crate) fn axis(&self) -> Option<([DVec3; 2], f64)> {
+    /// The ends of the axis of a round shape, and the radii there, between which it is within a radius that changes
+    /// evenly; flat shapes have none.
+    pub(crate) fn axis(&self) -> Option<([DVec3; 2], [f64; 2])> {
         match self.both_sided() {
-            Self::Sphere(s) => Some(([s.center(); 2], s.radius())),
-            Self::Cylinder(s) => Some((s.axis_points(), s.radius())),
-            Self::Cone(s) => Some((s.axis_points(), s.radius())),
+            Self::Sphere(s) => Some(([s.center(); 2], [s.radius(); 2])),
+            Self::Cylinder(s) => Some((s.axis_points(), [s.radius(); 2])),
+            Self::Cone(s) => {
+                let (top, top_radius) = s.top();
+                Some(([s.axis_points()[0], top], [s.radius(), top_radius]))
+            }
             _ => None,
         }
     }

@@ -192,6 +192,26 @@ fn a_wire_that_runs_past_the_eye_is_found() {
     assert_honest("adaptive", &refined, &truth);
 }
 
+/// Needles wider than a pixel and a half at one end, of which the other end is thin. Oracle: 1024 samples in every pixel.
+#[test]
+fn the_thin_ends_of_needles_are_found() {
+    let pixel = 20.0 / f64::from(SIDE);
+    for width in [1.6, 2.0] {
+        let needle = |k: u32| {
+            let (x, lean) = (0.8 * f64::from(k) - 8.0, 0.07 * f64::from(k) - 0.5);
+            let (from, to) = (format!("[{x}, -8, 0]"), format!("[{}, 8, 0]", x + lean));
+            let radius = width / 2.0 * pixel;
+            format!("cone = {{ base = {from}, apex = {to}, radius = {radius}, ends = \"open\" }}")
+        };
+        let scene = white(&(0..20).map(needle).collect::<Vec<String>>());
+        let truth = rendered(&scene, mode("sobol:1024")).film;
+        for aa in ["adaptive", "adaptive:16"] {
+            assert_honest(&format!("{width} {aa}"), &rendered(&scene, mode(aa)), &truth);
+        }
+        assert_honest(&format!("{width} to 2"), &towards(&scene, 2.0), &truth);
+    }
+}
+
 /// Thirty wires `width` pixels wide, each leaning a little more than the one before.
 fn fence(width: f64, least_lean: f64) -> Scene {
     let pixel = 20.0 / f64::from(SIDE);
