@@ -127,6 +127,11 @@ impl<'a> Job<'a> {
         state.accounts[record.number] = Some(record.account);
     }
 
+    /// Where its blocks are, by their numbers.
+    pub fn places(&self) -> &[Tile] {
+        &self.places
+    }
+
     /// Where the checkpoint is to be.
     pub fn checkpoint_path(&self) -> Option<PathBuf> {
         self.kept().path.clone()

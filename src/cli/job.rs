@@ -165,7 +165,7 @@ fn render(
     let course = watcher.course;
     let work = || {
         let _end = course.end_of();
-        render_blocks(order.scene, order.options, job)
+        render_blocks(order.scene, order.options, job.places(), job)
     };
     std::thread::scope(|scope| {
         let (terminal, window) = match preview {

@@ -324,14 +324,14 @@ mod tests {
         for mode in ["none", "grid:2", "sobol:5", "adaptive"] {
             let aa = mode.parse().expect("a mode");
             let options = RenderOptions { size: Some([200, 200]), aa, ..RenderOptions::default() };
-            let count = blocks(&scene, &options).expect("whole").len() as u64;
-            for (patience, put) in [(3, 0), (u64::MAX, count)] {
+            let places = blocks(&scene, &options).expect("whole");
+            for (patience, put) in [(3, 0), (u64::MAX, places.len() as u64)] {
                 let sink = Impatient {
                     patience: AtomicU64::new(patience),
                     put: AtomicU64::new(0),
                     share_done: Mutex::new(0.0),
                 };
-                render_blocks(&scene, &options, &sink).expect("rendered");
+                render_blocks(&scene, &options, &places, &sink).expect("rendered");
                 assert_eq!(sink.put.into_inner(), put, "{mode}, {patience}");
                 let done = sink.share_done.into_inner().expect("sound");
                 assert!(if put == 0 { done < 0.2 } else { done == 1.0 }, "{mode}: {done}");

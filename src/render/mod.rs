@@ -209,7 +209,7 @@ pub fn render(
 ) -> Result<Rendering, RenderError> {
     let part = part(scene, options)?;
     let whole = whole::Whole::new(&part, progress);
-    let effort = render_blocks(scene, options, &whole)?;
+    let effort = render_blocks(scene, options, &blocks(scene, options)?, &whole)?;
     Ok(whole.into_rendering(&effort))
 }
 
@@ -244,7 +244,8 @@ fn view(scene: &Scene, options: &RenderOptions) -> View {
     camera.view(width, height)
 }
 
-/// Renders the [`blocks`] of a picture of `scene` that `sink` wants, and hands them to it.
+/// Renders those of the blocks at `places`, which are [`blocks`] of a picture of `scene`, that `sink` wants, and hands
+/// them to it.
 ///
 /// Each block is the same whichever others are rendered, in whatever order and by however many threads, unless the goal
 /// is [`Goal::Until`]: then it depends on the clock.
@@ -254,6 +255,7 @@ fn view(scene: &Scene, options: &RenderOptions) -> View {
 pub fn render_blocks(
     scene: &Scene,
     options: &RenderOptions,
+    places: &[Tile],
     sink: &dyn Sink,
 ) -> Result<Effort, RenderError> {
     let started = Instant::now();
@@ -294,8 +296,7 @@ pub fn render_blocks(
         let rays = rays.into_inner().unwrap_or_else(PoisonError::into_inner);
         Some(picture.into_block(number, *place, rays))
     };
-    let places = blocks(scene, options)?;
-    pool.install(|| blocks::run(&places, progress_units(options.aa, options.goal), sink, &block));
+    pool.install(|| blocks::run(places, progress_units(options.aa, options.goal), sink, &block));
     let seconds = started.elapsed().as_secs_f64();
     Ok(Effort { threads: pool.current_num_threads(), seconds, depth })
 }

@@ -118,13 +118,14 @@ impl Canvas {
                 shown.film = shown.film.resampled(size);
             }
             drop(shown);
-            let count = blocks(scene, &options)?.len();
+            let places = blocks(scene, &options)?;
             let coarse = Film::new(pass.size[0], pass.size[1]);
-            let own = Mutex::new(Own { coarse, accounts: vec![None; count] });
+            let own = Mutex::new(Own { coarse, accounts: vec![None; places.len()] });
             let is_fine = pass.size == size;
             render_blocks(
                 scene,
                 &options,
+                &places,
                 &Painter { canvas: self, number, own, is_fine, is_last, changed },
             )?;
             let Some(mut shown) = self.of(number) else { return Ok(()) };

@@ -65,7 +65,9 @@ fn a_damaged_checkpoint_costs_time_but_never_a_pixel() {
     let scene = load_builtin("assignment").expect("built in");
     let never = AtomicBool::new(false);
     let whole = job(&scene, &path, &never, &quiet);
-    let effort = render_blocks(&scene, &options(), &whole).expect("rendered");
+    let effort =
+        render_blocks(&scene, &options(), &blocks(&scene, &options()).expect("whole"), &whole)
+            .expect("rendered");
     let (film, rendering) = finished(whole, &effort);
 
     let stop = AtomicBool::new(false);
@@ -75,7 +77,7 @@ fn a_damaged_checkpoint_costs_time_but_never_a_pixel() {
         stop.fetch_or(progress.done * 2 > progress.total, Ordering::Relaxed);
     };
     let half = job(&scene, &path, &stop, &halfway);
-    render_blocks(&scene, &options(), &half).expect("rendered");
+    render_blocks(&scene, &options(), half.places(), &half).expect("rendered");
     assert!(!half.is_complete() && half.share_done() > 0.2 && reports.load(Ordering::Relaxed) > 10);
     half.save().expect("written");
     let bytes = fs::read(&path).expect("there");
@@ -104,7 +106,8 @@ fn a_damaged_checkpoint_costs_time_but_never_a_pixel() {
         }
         kept += usize::from(resumed.share_done() > 0.0);
         if round % 8 == 1 {
-            let effort = render_blocks(&scene, &options(), &resumed).expect("rendered");
+            let effort =
+                render_blocks(&scene, &options(), resumed.places(), &resumed).expect("rendered");
             resumed.save().expect("written");
             let (again, rendering_again) = finished(resumed, &effort);
             assert!(again == film, "round {round}, byte {place}");

@@ -42,7 +42,7 @@ fn render(scene: &Scene, job: &Job, stop: &AtomicBool, time: Option<Duration>) -
                 }
             }
         });
-        let effort = render_blocks(scene, &options(scene), job).expect("rendered");
+        let effort = render_blocks(scene, &options(scene), job.places(), job).expect("rendered");
         has_ended.store(true, Ordering::Relaxed);
         effort
     })
@@ -51,7 +51,13 @@ fn render(scene: &Scene, job: &Job, stop: &AtomicBool, time: Option<Duration>) -
 fn uninterrupted(scene: &Scene, path: &Path) -> Rendering {
     let never = AtomicBool::new(false);
     let whole = job(scene, path, &never);
-    let effort = render_blocks(scene, &options(scene), &whole).expect("rendered");
+    let effort = render_blocks(
+        scene,
+        &options(scene),
+        &blocks(scene, &options(scene)).expect("whole"),
+        &whole,
+    )
+    .expect("rendered");
     whole.into_rendering(&effort)
 }
 

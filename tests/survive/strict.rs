@@ -117,7 +117,7 @@ fn a_picture_that_only_has_to_be_written_says_what_it_missed() {
     let path = at.join("a.png.checkpoint");
     let never = AtomicBool::new(false);
     let job = Job::new(label, places, Some(path), &never, &quiet);
-    render_blocks(&scene, &options, &job).expect("rendered");
+    render_blocks(&scene, &options, job.places(), &job).expect("rendered");
     job.save().expect("written");
     let goal = ["--max-error", "0.1", "--aa", "adaptive:0,8", "--resume", "--strict"];
     let render = [&["render", "--size", "200x150", "-o", "a.png"][..], &goal].concat();

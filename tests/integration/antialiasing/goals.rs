@@ -9,7 +9,7 @@ use whitted::Rgb;
 use whitted::aa::AntiAliasing;
 use whitted::film::Tile;
 use whitted::render::{
-    Block, Goal, RenderError, RenderOptions, Sink, Unfinished, render, render_blocks,
+    Block, Goal, RenderError, RenderOptions, Sink, Unfinished, blocks, render, render_blocks,
 };
 use whitted::scene::{LoadOptions, load, load_builtin};
 
@@ -94,7 +94,8 @@ fn any_way_to_the_same_threshold_gives_the_same_picture() {
                 goal: Goal::Error(*wanted),
                 ..RenderOptions::default()
             };
-            render_blocks(&scene, &options, &sink).expect("rendered");
+            render_blocks(&scene, &options, &blocks(&scene, &options).expect("whole"), &sink)
+                .expect("rendered");
         }
         let end = sink.end.into_inner().expect("no panic").expect("a picture");
         (sink.looks.into_inner().expect("no panic"), end)
@@ -148,7 +149,8 @@ fn a_pause_before_all_centres_are_traced_changes_nothing() {
             goal,
             ..RenderOptions::default()
         };
-        render_blocks(&scene, &options, &sink).expect("rendered");
+        render_blocks(&scene, &options, &blocks(&scene, &options).expect("whole"), &sink)
+            .expect("rendered");
         (sink.is_kept.into_inner(), sink.end.into_inner().expect("no panic").expect("a picture"))
     };
     let (_, expected) = render_to(Goal::Error(0.2), usize::MAX);
@@ -237,7 +239,8 @@ fn a_picture_is_shown_on_its_way_to_an_error_nearer_and_nearer() {
     };
     let options = with("adaptive:0,1024", Goal::Error(0.5));
     let to_its_end = Looks { most: usize::MAX, ..Looks::default() };
-    render_blocks(&scene, &options, &to_its_end).expect("rendered");
+    render_blocks(&scene, &options, &blocks(&scene, &options).expect("whole"), &to_its_end)
+        .expect("rendered");
     let looks = to_its_end.seen.into_inner().expect("no panic");
     assert!(looks.len() >= 3 && looks[0].1.iter().all(|&rays| rays == 1), "{}", looks.len());
     let mut errors: Vec<f32> = looks.iter().map(|(colors, _)| off(colors)).collect();
@@ -246,7 +249,8 @@ fn a_picture_is_shown_on_its_way_to_an_error_nearer_and_nearer() {
     assert!(errors[errors.len() - 1] < 0.1 * errors[0], "{errors:?}");
     // Stopped, it is what was shown last, or somewhat better.
     let stopped = Looks { most: 2, ..Looks::default() };
-    render_blocks(&scene, &options, &stopped).expect("rendered");
+    render_blocks(&scene, &options, &blocks(&scene, &options).expect("whole"), &stopped)
+        .expect("rendered");
     let looks = stopped.seen.into_inner().expect("no panic");
     assert_eq!(looks.len(), 2);
     assert!(off(&stopped.end.into_inner().expect("no panic")) <= off(&looks[1].0));
