@@ -318,8 +318,7 @@ impl Shape {
         let crossing = first_ahead(&shape.crossings_of(&ray, primitive), f64::INFINITY)?;
         let hit = Hit { t: crossing.t, primitive, face: crossing.face };
         let surface = map.surface_back(&shape.surface(&ray, &hit));
-        // A hit is ahead, even one so near in lengths of a long direction that its distance underflows.
-        Some((Hit { t: rescale.apply(hit.t).max(f64::from_bits(1)), ..hit }, surface))
+        Some((Hit { t: rescale.of_hit(hit.t), ..hit }, surface))
     }
 }
 

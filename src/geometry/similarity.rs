@@ -28,6 +28,12 @@ impl ParameterScale {
         scale::scaled(DVec3::splat(t), self.0).x
     }
 
+    /// The parameter of a hit on the ray, given that on its image. A hit is ahead, even one so near in lengths of a long
+    /// direction that its distance underflows.
+    pub fn of_hit(self, t: f64) -> f64 {
+        self.apply(t).max(f64::from_bits(1))
+    }
+
     /// The parameter on the image, given that on the ray.
     pub fn revert(self, t: f64) -> f64 {
         scale::scaled(DVec3::splat(t), -self.0).x

@@ -224,8 +224,7 @@ impl Scene {
         let (ray, scale) = self.map.ray(ray);
         let hit = self.accel.nearest(&ray, f64::INFINITY)?;
         let surface = self.map.surface_back(&self.surface(&ray, &hit));
-        // A hit is ahead, even one so near in lengths of a long direction that its distance underflows.
-        Some((Hit { t: scale.apply(hit.t).max(f64::from_bits(1)), ..hit }, surface))
+        Some((Hit { t: scale.of_hit(hit.t), ..hit }, surface))
     }
 
     /// Whether anything at all, transparent or not, is met with `0 < t < end`.
