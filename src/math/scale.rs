@@ -48,8 +48,8 @@ pub(crate) fn largest(v: DVec3) -> f64 {
     if largest > size.z { largest } else { size.z }
 }
 
-/// The unit vector along `v`, or `other` if the largest component is below 2^−1022, from 2^1023 up or infinite; without a branch, for loops over
-/// lanes.
+/// The unit vector along `v`, or `other` if the largest component is below 2^−1022, from 2^1023 up or infinite; without a
+/// branch, for loops over lanes.
 #[inline(always)]
 pub(crate) fn unit_or(v: DVec3, other: DVec3) -> DVec3 {
     let exponent = largest(v).to_bits() >> 52; // biased

@@ -138,7 +138,8 @@ fn a_scene_may_come_from_standard_input() {
         let inspected = whitted(folder.path(), &["inspect", "-"]).stdin(given()).output();
         let inspected = inspected.expect("runs");
         done(&inspected);
-        assert!(text(&inspected.stdout).contains("spheres"), "{}", text(&inspected.stdout));
+        let inspected = text(&inspected.stdout);
+        assert!(inspected.starts_with("stdin\n") && inspected.contains("spheres"), "{inspected}");
     }
     for (given, said_of) in
         [("", "standard input"), ("v\nfrom here", "standard input:2"), ("[", "standard input:1")]

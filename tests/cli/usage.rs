@@ -1,7 +1,9 @@
 //! Wrong usage: one line, code 2, nothing written.
 
+use std::fs;
+
 use super::assert_refused;
-use crate::program::{folder, names_in, run};
+use crate::program::{done, folder, json, names_in, run, whitted};
 
 #[test]
 fn bad_values_are_refused_on_one_line_before_anything_is_written() {
@@ -97,4 +99,42 @@ fn a_picture_towards_an_error_that_no_memory_holds_is_refused() {
     let words = [&*size, "free", "--size", "--aa adaptive:ERROR"];
     assert_refused(&output, 1, &words);
     assert_eq!(names_in(folder.path()), [""; 0]);
+}
+
+/// Oracle: the model's own size, of which the scene says nothing.
+#[test]
+fn a_model_may_be_all_there_is_but_not_without_end() {
+    let folder = folder();
+    let model = |size: &str| {
+        let text = format!(
+            "v {size} 0 0\nv 0 {size} 0\nv 0 0 {size}\nv 0 0 0\nf 1 2 3\nf 1 2 4\nf 1 3 4\n"
+        );
+        fs::write(folder.path().join("a.obj"), text).expect("written");
+    };
+    let scene = "resolution = [20, 20]\ndepth = 2\nbackground = [1, 0, 0]\n\
+        camera = { eye = [0.3, 0.2, 9], look_at = [0.3, 0.2, 0], up = [0, 1, 0], vertical_fov = 30 }\n\
+        light = [{ position = [5, 5, 5], intensity = 1 }]\n";
+    fs::write(folder.path().join("empty.toml"), scene).expect("written");
+    model("1");
+    let render = ["render", "empty.toml", "--obj", "a.obj", "--aa", "none", "--stats", "-"];
+    let output = run(folder.path(), &render);
+    done(&output);
+    let hit = json(&output.stdout)["rays"]["camera_hit"].as_u64().expect("a number");
+    assert!((5..100).contains(&hit), "{hit} of 400 rays hit it");
+    model("1e160");
+    let output = run(folder.path(), &["render", "a.obj"]);
+    assert_refused(&output, 3, &["a.obj: there can be no floor", "too large"]);
+}
+
+/// The name with replacement characters may be another file's.
+#[cfg(unix)]
+#[test]
+fn a_scene_whose_name_is_not_utf8_is_not_looked_for_by_another() {
+    use std::os::unix::ffi::OsStrExt as _;
+
+    let folder = folder();
+    let mut inspect = whitted(folder.path(), &["inspect"]);
+    inspect.arg(std::ffi::OsStr::from_bytes(b"a\xff.toml"));
+    let output = inspect.output().expect("it runs");
+    assert_refused(&output, 2, &["must be UTF-8"]);
 }

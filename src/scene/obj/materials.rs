@@ -8,7 +8,7 @@
 //! | `illum` 0 | the colour by itself, without light: ambient 1, diffuse 0 |
 //! | `illum` 3, 4, 5, 6, 7, 8, 9 | a mirror image with the weight of `Ks` |
 //! | `d` (or 1 − `Tr`; `d` wins) | the opacity; 1 − `d` is the weight of what passes, straight on, filtered by `Tf` |
-//! | `illum` 4, 6, 7, 9 | glass: what passes is bent by `Ni`; if `d` says nothing of it, as much passes as `Tf` says, and the opacity is 0.15 |
+//! | `illum` 4, 6, 7, 9 | glass: what passes is bent by `Ni`; where `d` is 1 or missing as much passes as `Tf` says, and the opacity is 0.15 |
 //!
 //! Fresnel's terms of `illum` 5 and 7 are not Whitted's and left out. Colours are sRGB display values.
 
