@@ -8,6 +8,7 @@
 //! [`Shape::first_hit`] takes a ray and a shape of any scale.
 
 pub mod bounds;
+mod brick;
 pub mod cone;
 pub mod cylinder;
 pub mod face;
@@ -31,6 +32,7 @@ pub mod triangulate;
 mod unit_cone;
 
 pub use bounds::Bounds;
+pub(crate) use brick::Brick;
 pub use cone::Cone;
 pub use cylinder::Cylinder;
 pub use face::Face;

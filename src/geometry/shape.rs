@@ -293,6 +293,11 @@ impl Shape {
         }
     }
 
+    /// Whether the shape is flat and not one of the faces of a mesh.
+    pub(crate) fn is_flat_alone(&self) -> bool {
+        matches!(self.both_sided(), Self::Quad(_) | Self::Triangle(_) | Self::Polygon(_))
+    }
+
     /// Calls `visit` with every point that defines the shape, whose coordinates a change of origin must carry.
     pub(crate) fn for_each_point(&self, mut visit: impl FnMut(DVec3)) {
         match self {

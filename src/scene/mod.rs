@@ -49,12 +49,11 @@ use crate::{
     accel::{Accel, Isa, Preset},
     camera::Camera,
     color::Rgb,
-    geometry::{Hit, Mesh, Ray, Shape, Similarity, Surface},
+    geometry::{Brick, Hit, Mesh, Ray, Shape, Similarity, Surface},
     light::Light,
     material::Material,
 };
 use load::ImageSource;
-pub(crate) use pieces::Rod;
 
 /// A scene, ready to trace.
 #[derive(Debug)]
@@ -76,8 +75,8 @@ pub struct Scene {
     /// caches.
     opaque: Vec<u64>,
     meshes: Vec<Arc<Mesh>>,
-    /// Of all meshes; made when they are asked for.
-    pieces: OnceLock<Vec<Rod>>,
+    /// Of meshes and flat shapes; made when they are asked for.
+    pieces: OnceLock<Vec<Brick>>,
     accel: Accel,
     build_seconds: f64,
 }
@@ -265,10 +264,14 @@ impl Scene {
         self.accel.shape(primitive)
     }
 
-    /// The pieces of the meshes, each in the rod about it.
-    pub(crate) fn pieces(&self) -> &[Rod] {
-        let of_meshes = || self.meshes.iter().flat_map(|mesh| pieces::rods(mesh)).collect();
-        self.pieces.get_or_init(of_meshes)
+    /// What hangs together of meshes and flat shapes, each piece in the brick about it.
+    pub(crate) fn pieces(&self) -> &[Brick] {
+        self.pieces.get_or_init(|| {
+            let of_meshes = self.meshes.iter().flat_map(|mesh| pieces::of_mesh(mesh));
+            let primitives = 0..self.primitive_count() as u32;
+            let of_shapes = pieces::of_flat(primitives.map(|primitive| self.shape(primitive)));
+            of_meshes.chain(of_shapes).collect()
+        })
     }
 
     #[inline(always)]

@@ -212,6 +212,47 @@ fn the_thin_ends_of_needles_are_found() {
     }
 }
 
+/// Discs seen nearly edge-on, small tetrahedra, and narrow quads and triangles. Oracle: 1024 samples in every pixel.
+#[test]
+fn thin_flat_things_are_found() {
+    let pixel = 20.0 / f64::from(SIDE);
+    let mut random = SplitMix64::new(8);
+    let mut number = |from: f64, to: f64| from + (to - from) * random.uniform();
+    let mut disc = || {
+        let (x, y, lean) = (number(-8.0, 8.0), number(-9.0, 9.0), number(-0.8, 0.8));
+        let [dx, dy] = [-lean.sin(), lean.cos()].map(|part| 0.15 * pixel * part);
+        let (from, to) = (format!("[{x}, {y}, 0]"), format!("[{}, {}, 0]", x + dx, y + dy));
+        format!("cylinder = {{ base = {from}, top = {to}, radius = 1.3, ends = \"closed\" }}")
+    };
+    let discs: Vec<String> = (0..30).map(|_| disc()).collect();
+    let mut tetrahedron = || {
+        let (x, y, turn) = (number(-9.0, 9.0), number(-9.0, 9.0), number(0.0, 120.0));
+        let edge = 0.5 * pixel;
+        format!("tetrahedron = {{ base_center = [{x}, {y}, 0], edge = {edge}, turn = {turn} }}")
+    };
+    let tetrahedra: Vec<String> = (0..200).map(|_| tetrahedron()).collect();
+    let mut narrow = |k: u32| {
+        let (x, y, lean) = (number(-8.0, 8.0), number(-8.0, 3.0), number(-0.8, 0.8));
+        let [dx, dy] = [lean.sin(), lean.cos()].map(|part| 5.0 * part);
+        let [u, v] = [lean.cos(), -lean.sin()].map(|part| 0.2 * pixel * part);
+        if k % 2 == 0 {
+            format!("quad = {{ corner = [{x}, {y}, 0], edges = [[{dx}, {dy}, 0], [{u}, {v}, 0]] }}")
+        } else {
+            let corners = [[x, y], [x + u, y + v], [x + dx, y + dy]].map(|[x, y]| [x, y, 0.0]);
+            format!("triangle = {{ vertices = {corners:?} }}")
+        }
+    };
+    let narrow: Vec<String> = (0..40).map(&mut narrow).collect();
+    for (name, shapes) in [("discs", discs), ("tetrahedra", tetrahedra), ("narrow", narrow)] {
+        let scene = white(&shapes);
+        let truth = rendered(&scene, mode("sobol:1024")).film;
+        for aa in ["adaptive", "adaptive:8", "adaptive:16"] {
+            assert_honest(&format!("{name} {aa}"), &rendered(&scene, mode(aa)), &truth);
+        }
+        assert_honest(&format!("{name} to 2"), &towards(&scene, 2.0), &truth);
+    }
+}
+
 /// Thirty wires `width` pixels wide, each leaning a little more than the one before.
 fn fence(width: f64, least_lean: f64) -> Scene {
     let pixel = 20.0 / f64::from(SIDE);
