@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use super::{
     Accel,
-    decide::triangle_crossing,
+    decide::flat_crossing,
     extreme,
     frame::Entry,
     leaf::{Candidates, LeafRay},
@@ -133,11 +133,11 @@ where
             if certain && (self.test.opaque)(self.test.accel.numbers[place]) {
                 return true;
             }
-            let stopped = match self.tree.corners(place as u32) {
+            let stopped = match self.tree.flat(place as u32) {
                 None => self.test.test(simd, place),
-                Some(corners) => {
-                    let crossing = triangle_crossing(simd, corners, self.test.ray, certain);
-                    self.test.crosses(self.test.accel.numbers[place], crossing)
+                Some(flat) => {
+                    let crossing = flat_crossing(simd, flat, self.test.ray, certain);
+                    self.test.crosses(flat.number, crossing)
                 }
             };
             if stopped {

@@ -2,9 +2,10 @@
 
 use std::ops::Range;
 
-use glam::DVec3;
-
-use super::simd::{Kernel, Simd};
+use super::{
+    simd::{Kernel, Simd},
+    tree::Flat,
+};
 use crate::geometry::{
     Crossing, Ray, Shape,
     hit::Crossings,
@@ -33,38 +34,29 @@ impl Kernel for ShapeTest<'_> {
     }
 }
 
-/// [`triangle::crossing`], or, of a triangle that is certainly crossed, [`triangle::certain_crossing`].
+/// [`triangle::crossing`], or, of a triangle that is certainly crossed, what comes to the same.
 #[inline(always)]
-pub(super) fn triangle_crossing<S: Simd>(
-    simd: S,
-    corners: &[DVec3; 3],
-    ray: &Ray,
-    certain: bool,
-) -> Crossing {
+pub(super) fn flat_crossing<S: Simd>(simd: S, flat: &Flat, ray: &Ray, certain: bool) -> Crossing {
     #[cfg(feature = "leaf-study")]
     super::study::count_triangle();
     if certain {
-        simd.vectorize(TriangleTest::<true> { corners, ray })
+        Crossing::at(flat.plane.parameter(ray.origin, ray.dir))
     } else {
-        simd.vectorize(TriangleTest::<false> { corners, ray })
+        simd.vectorize(FlatTest { flat, ray })
     }
 }
 
-struct TriangleTest<'a, const CERTAIN: bool> {
-    corners: &'a [DVec3; 3],
+struct FlatTest<'a> {
+    flat: &'a Flat,
     ray: &'a Ray,
 }
 
-impl<const CERTAIN: bool> Kernel for TriangleTest<'_, CERTAIN> {
+impl Kernel for FlatTest<'_> {
     type Output = Crossing;
 
     #[inline(always)]
     fn run<S: Simd>(self, _: S) -> Crossing {
-        if CERTAIN {
-            triangle::certain_crossing(self.corners, self.ray)
-        } else {
-            triangle::crossing(self.corners, self.ray)
-        }
+        triangle::crossing(&self.flat.corners(), self.ray)
     }
 }
 
@@ -93,33 +85,5 @@ impl Kernel for ShapeLanes<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, _: S) -> bool {
         self.shape.cross_lanes(self.rays, self.lanes, self.crossed)
-    }
-}
-
-/// [`triangle::cross_lanes`].
-#[inline(always)]
-pub(super) fn triangle_lanes<S: Simd>(
-    simd: S,
-    corners: &[DVec3; 3],
-    rays: &RayLanes,
-    lanes: Range<usize>,
-    crossed: &mut [Column; 2],
-) {
-    simd.vectorize(TriangleLanes { corners, rays, lanes, crossed });
-}
-
-struct TriangleLanes<'a> {
-    corners: &'a [DVec3; 3],
-    rays: &'a RayLanes<'a>,
-    lanes: Range<usize>,
-    crossed: &'a mut [Column; 2],
-}
-
-impl Kernel for TriangleLanes<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<S: Simd>(self, _: S) {
-        triangle::cross_lanes(self.corners, self.rays, self.lanes, self.crossed);
     }
 }

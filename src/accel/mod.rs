@@ -147,7 +147,7 @@ impl Accel {
             places[*number as usize] = place;
         }
         let shapes = in_order(shapes, &numbers);
-        let tree = wide.map(|(wide, frame)| Tree::new(wide, frame, &shapes));
+        let tree = wide.map(|(wide, frame)| Tree::new(wide, frame, &shapes, &numbers));
         if shapes.len() >= LARGE {
             huge::give_back();
         }

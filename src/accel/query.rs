@@ -2,7 +2,7 @@
 
 use super::{
     Accel,
-    decide::triangle_crossing,
+    decide::flat_crossing,
     extreme,
     frame::{Entry, TreeRay},
     leaf::{Candidates, LeafRay},
@@ -31,12 +31,12 @@ impl Best {
         Self { t: end, primitive: 0, face: 0, is_hit: false }
     }
 
-    /// Takes the crossing with the primitive in `place` if it is better: nearer, or as near and of a lower primitive.
+    /// Takes the crossing with the primitive of a `number` if it is better: nearer, or as near and of a lower primitive.
     #[inline(always)]
-    fn offer(&mut self, crossing: Crossing, accel: &Accel, place: usize) {
+    fn offer(&mut self, crossing: Crossing, number: impl Fn() -> u32) {
         let t = crossing.t;
         if t > 0.0 && t <= self.t {
-            let primitive = accel.numbers[place];
+            let primitive = number();
             if t < self.t || primitive < self.primitive {
                 *self = Self { t, primitive, face: crossing.face, is_hit: true };
             }
@@ -47,8 +47,8 @@ impl Best {
     #[inline(always)]
     pub(super) fn test<S: Simd>(&mut self, simd: S, accel: &Accel, ray: &Ray, place: usize) {
         let [first, second] = accel.crossings(simd, ray, place);
-        self.offer(first, accel, place);
-        self.offer(second, accel, place);
+        self.offer(first, || accel.numbers[place]);
+        self.offer(second, || accel.numbers[place]);
     }
 
     #[inline(always)]
@@ -149,11 +149,11 @@ impl<'a> Search<'a> {
     /// Decides a leaf's primitive, which is hit if `certain`.
     #[inline(always)]
     fn decide<S: Simd>(&mut self, simd: S, place: u32, certain: bool) {
-        match self.tree.corners(place) {
+        match self.tree.flat(place) {
             None => self.test(simd, place),
-            Some(corners) => {
-                let crossing = triangle_crossing(simd, corners, self.ray, certain);
-                self.best.offer(crossing, self.accel, place as usize);
+            Some(flat) => {
+                let crossing = flat_crossing(simd, flat, self.ray, certain);
+                self.best.offer(crossing, || flat.number);
                 self.limit = self.limit.min(self.tree_ray.end_above(self.best.t));
             }
         }
@@ -191,7 +191,7 @@ impl<'a> Search<'a> {
             #[cfg(feature = "leaf-study")]
             if super::study::is_naive() {
                 let crossing = self.leaf_ray.crossing(from);
-                self.best.offer(crossing, self.accel, place as usize);
+                self.best.offer(crossing, || self.accel.numbers[place as usize]);
                 return self.best;
             }
             self.decide(simd, place, true);

@@ -12,10 +12,10 @@ use crate::geometry::Ray;
 /// Asks for the memory that a decision about the primitive in `place` needs.
 #[inline(always)]
 pub(super) fn prefetch<S: Simd>(simd: S, accel: &Accel, tree: &Tree, place: u32) {
-    match tree.corners(place) {
-        Some(corners) => simd.prefetch(corners),
-        None => simd.prefetch(&accel.shapes[place as usize]),
+    if let Some(flat) = tree.flat(place) {
+        return simd.prefetch(flat);
     }
+    simd.prefetch(&accel.shapes[place as usize]);
     simd.prefetch(&accel.numbers[place as usize]);
 }
 

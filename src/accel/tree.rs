@@ -14,7 +14,7 @@ use super::{
     node::{Child, Content, Node},
     simd::Simd,
 };
-use crate::geometry::Shape;
+use crate::geometry::{Shape, triangle::Plane};
 
 /// The nodes of the tree over the primitives `inside`, and their order; a balanced one where the other has more than `deepest` nodes
 /// on a way down.
@@ -36,6 +36,24 @@ pub(super) fn arrange(
     wide
 }
 
+/// A triangle. If a ray certainly crosses it, what is needed is in one line of the cache.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(super) struct Flat {
+    pub(super) plane: Plane,
+    /// The number of the primitive.
+    pub(super) number: u32,
+    corners: [DVec3; 2],
+}
+
+impl Flat {
+    /// The corners.
+    #[inline(always)]
+    pub(super) fn corners(&self) -> [DVec3; 3] {
+        [self.plane.vertex, self.corners[0], self.corners[1]]
+    }
+}
+
 /// Nodes and leaves, and the frame in which their boxes are.
 #[derive(Debug)]
 pub(super) struct Tree {
@@ -44,13 +62,13 @@ pub(super) struct Tree {
     pub(super) nodes: Vec<Node>,
     pub(super) spheres: Spheres,
     pub(super) triangles: Triangles,
-    /// The corners of the triangles, exactly, in the order of the leaves.
-    corners: Vec<[DVec3; 3]>,
+    /// The triangles of leaves, in the order of these.
+    flats: Vec<Flat>,
 }
 
 impl Tree {
-    /// The tree whose nodes are those of `wide`, over `shapes` in its order.
-    pub(super) fn new(wide: Wide, frame: Frame, shapes: &[Shape]) -> Self {
+    /// The tree whose nodes are those of `wide`, over `shapes` in its order, whose numbers are `numbers`.
+    pub(super) fn new(wide: Wide, frame: Frame, shapes: &[Shape], numbers: &[u32]) -> Self {
         let spheres = Spheres::new(&wide.sphere_runs, frame.pad(), |place| {
             let Shape::Sphere(s) = &shapes[place as usize] else {
                 unreachable!("a leaf of spheres")
@@ -59,18 +77,24 @@ impl Tree {
         });
         let places = wide.triangle_runs.first().zip(wide.triangle_runs.last());
         let places = places.map_or(0..0, |(a, b)| a.places().start..b.places().end);
-        let (base, mut corners) = (places.start, huge::vec_with_capacity(places.len()));
-        shapes[places].par_iter().map(corners_of).collect_into_vec(&mut corners);
+        let (base, mut flats) = (places.start, huge::vec_with_capacity(places.len()));
+        let flat = |(shape, number): (&Shape, &u32)| {
+            let corners = corners_of(shape);
+            let plane = Plane::through(&corners);
+            Flat { plane, number: *number, corners: [corners[1], corners[2]] }
+        };
+        let numbers = &numbers[places.clone()];
+        shapes[places].par_iter().zip(numbers).map(flat).collect_into_vec(&mut flats);
         let triangles = Triangles::new(&wide.triangle_runs, frame.coarseness(), |place| {
-            corners[place as usize - base].map(|v| frame.point(v))
+            flats[place as usize - base].corners().map(|v| frame.point(v))
         });
-        Self { frame, root: wide.root, nodes: wide.nodes, spheres, triangles, corners }
+        Self { frame, root: wide.root, nodes: wide.nodes, spheres, triangles, flats }
     }
 
     /// The memory of nodes and leaves, in bytes.
     pub(super) fn bytes(&self) -> usize {
         let leaves = self.spheres.rows.bytes() + self.triangles.rows.bytes();
-        size_of_val(self.nodes.as_slice()) + leaves + size_of_val(self.corners.as_slice())
+        size_of_val(self.nodes.as_slice()) + leaves + size_of_val(self.flats.as_slice())
     }
 
     /// The places of a leaf's primitives.
@@ -105,13 +129,13 @@ impl Tree {
     /// Whether there are leaves of triangles.
     #[inline(always)]
     pub(super) fn has_triangles(&self) -> bool {
-        !self.corners.is_empty()
+        !self.flats.is_empty()
     }
 
-    /// The corners of the primitive in `place`, if it is a triangle.
+    /// The primitive in `place`, if it is a triangle.
     #[inline(always)]
-    pub(super) fn corners(&self, place: u32) -> Option<&[DVec3; 3]> {
-        self.corners.get(place.wrapping_sub(self.triangles.rows.base) as usize)
+    pub(super) fn flat(&self, place: u32) -> Option<&Flat> {
+        self.flats.get(place.wrapping_sub(self.triangles.rows.base) as usize)
     }
 }
 

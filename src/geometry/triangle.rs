@@ -66,29 +66,44 @@ pub(crate) fn crossing(corners: &[DVec3; 3], ray: &Ray) -> Crossing {
     flat::crossing_of(corners, || doubled_area(corners), ray)
 }
 
-/// The same, to the bit, for a triangle that is known to be crossed.
-#[inline(always)]
-pub(crate) fn certain_crossing(corners: &[DVec3; 3], ray: &Ray) -> Crossing {
-    Crossing::at(flat::parameter(corners[0], doubled_area(corners), ray.origin, ray.dir))
+/// The plane of a triangle, which is all that counts of one that is known to be crossed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Plane {
+    pub(crate) vertex: DVec3,
+    area: DVec3,
 }
 
-/// Triangles side by side that are known to be crossed by the rays in their lanes.
-pub(crate) struct CertainLanes {
+impl Plane {
+    /// The plane of the triangle between `corners`.
+    #[inline(always)]
+    pub(crate) fn through(corners: &[DVec3; 3]) -> Self {
+        Self { vertex: corners[0], area: doubled_area(corners) }
+    }
+
+    /// The parameter of [`crossing`], to the bit, of a ray that is known to cross the triangle.
+    #[inline(always)]
+    pub(crate) fn parameter(&self, origin: DVec3, dir: DVec3) -> f64 {
+        flat::parameter(self.vertex, self.area, origin, dir)
+    }
+}
+
+/// Planes of triangles side by side that are known to be crossed by the rays in their lanes.
+pub(crate) struct PlaneLanes {
     vertex: Vectors,
     area: Vectors,
 }
 
-impl CertainLanes {
+impl PlaneLanes {
     pub(crate) const NONE: Self = Self { vertex: Vectors::ZERO, area: Vectors::ZERO };
 
-    /// Puts the triangle between `corners` into a lane.
+    /// Puts a plane into a lane.
     #[inline(always)]
-    pub(crate) fn set(&mut self, lane: usize, corners: &[DVec3; 3]) {
-        self.vertex.set(lane, corners[0]);
-        self.area.set(lane, doubled_area(corners));
+    pub(crate) fn set(&mut self, lane: usize, plane: &Plane) {
+        self.vertex.set(lane, plane.vertex);
+        self.area.set(lane, plane.area);
     }
 
-    /// The parameter of [`certain_crossing`] in a lane.
+    /// [`Plane::parameter`] in a lane.
     #[inline(always)]
     pub(crate) fn parameter(&self, lane: usize, rays: &RayLanes) -> f64 {
         let (origin, dir) = (rays.origin.get(lane), rays.dir.get(lane));

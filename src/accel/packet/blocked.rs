@@ -8,7 +8,7 @@ use super::{Apart, BLOCKED, FEWEST_LANES, Packet, Searches, WIDEST, has_lanes};
 use crate::{
     accel::{
         Accel, crossed,
-        decide::{cross_lanes, triangle_crossing},
+        decide::{cross_lanes, flat_crossing},
         simd::{Kernel, Simd},
         tree::Tree,
     },
@@ -205,16 +205,16 @@ where
             packet.limit[k] = BLOCKED;
             return;
         }
-        match self.tree.corners(place).filter(|_| has_lanes()) {
-            None => self.test_each(simd, packet, place as usize, 1 << k),
-            // A ray never meets the triangle that it leaves.
-            Some(_) if number == left => {}
-            Some(corners) => {
-                let ray = self.rays.plain_ray(k);
-                let crossing = triangle_crossing(simd, corners, &ray, certain.is_some());
-                if self.lane_test(&ray, k).crosses(number, crossing) {
-                    packet.limit[k] = BLOCKED;
-                }
+        let flat = self.tree.flat(place).filter(|_| has_lanes());
+        let Some(flat) = flat else {
+            return self.test_each(simd, packet, place as usize, 1 << k);
+        };
+        // A ray never meets the triangle that it leaves.
+        if number != left {
+            let ray = self.rays.plain_ray(k);
+            let crossing = flat_crossing(simd, flat, &ray, certain.is_some());
+            if self.lane_test(&ray, k).crosses(number, crossing) {
+                packet.limit[k] = BLOCKED;
             }
         }
     }

@@ -6,7 +6,7 @@ use super::{FEWEST_LANES, Packet, Searches, Singles, WIDEST, has_lanes};
 use crate::{
     accel::{
         Accel,
-        decide::{cross_lanes, triangle_crossing, triangle_lanes},
+        decide::{cross_lanes, flat_crossing},
         simd::{Kernel, Simd},
         target::prefetch,
         tree::Tree,
@@ -14,12 +14,9 @@ use crate::{
     geometry::{
         Crossing,
         lanes::{Column, HitLanes, LANES, RayLanes, hull, lanes},
-        triangle::CertainLanes,
+        triangle::PlaneLanes,
     },
 };
-
-/// Fewer lanes than this are as fast with other triangles side by side.
-const FEWEST_OF_ONE: u32 = 12;
 
 /// The search for the nearest hits of rays from one origin in free space.
 pub(in crate::accel) struct NearestPacket<'a> {
@@ -70,32 +67,21 @@ struct Nearest<'a> {
 }
 
 impl Nearest<'_> {
-    /// Decides a leaf's primitive, which the rays of the lanes `met` hit if `certain`.
+    /// Decides a leaf's primitive, which the ray of a lane hits if `certain`.
     #[inline(always)]
     fn decide<S: Simd>(
         &mut self,
         simd: S,
         packet: &mut Packet,
         place: u32,
-        met: u64,
+        k: usize,
         certain: bool,
     ) {
-        let corners = self.tree.corners(place).filter(|_| has_lanes());
-        let Some(corners) = corners else {
-            return self.test(simd, packet, place as usize, met);
+        let Some(flat) = self.tree.flat(place).filter(|_| has_lanes()) else {
+            return self.test(simd, packet, place as usize, 1 << k);
         };
-        let number = self.accel.numbers[place as usize];
-        if met.count_ones() < FEWEST_LANES {
-            for k in lanes(met) {
-                let ray = self.rays.plain_ray(k);
-                let crossing = triangle_crossing(simd, corners, &ray, certain);
-                self.offer(packet, k, number, crossing);
-            }
-            return;
-        }
-        let range = hull(met);
-        triangle_lanes(simd, corners, self.rays, range.clone(), &mut self.crossed);
-        self.offer_lanes(packet, |_| number, range);
+        let crossing = flat_crossing(simd, flat, &self.rays.plain_ray(k), certain);
+        self.offer(packet, k, flat.number, crossing);
     }
 
     /// Takes the crossings of the lanes of a range, with the primitives of these numbers, that are better.
@@ -131,46 +117,44 @@ impl Nearest<'_> {
         }
     }
 
-    /// Decides what is pending: the triangles of few rays side by side.
+    /// Decides what is pending: triangles side by side, of anything else what several rays hit.
     #[inline(always)]
     fn finish<S: Simd>(&mut self, simd: S, packet: &mut Packet) {
         let pending = |k: usize| self.pending[k] != u32::MAX && self.from[k] <= packet.limit[k];
         let mut open = (0..LANES).fold(0_u64, |open, k| open | u64::from(pending(k)) << k);
-        let mut few = 0;
+        if self.tree.has_triangles() && has_lanes() {
+            open &= !self.finish_flats(packet, open);
+        }
         while open != 0 {
             let place = self.pending[open.trailing_zeros() as usize];
             let same = |k: usize| u64::from(self.pending[k] == place) << k;
             let same = open & (0..LANES).fold(0, |all, k| all | same(k));
             open &= !same;
-            let is_triangle = self.tree.corners(place).is_some() && has_lanes();
-            if is_triangle && same.count_ones() < FEWEST_OF_ONE {
-                few |= same;
-            } else {
-                self.decide(simd, packet, place, same, true);
-            }
+            self.test(simd, packet, place as usize, same);
         }
-        self.decide_few(packet, few);
     }
 
-    /// Decides the triangles that are pending in some lanes.
+    /// Decides the triangles that are pending in some lanes; returns which have one.
     #[inline(always)]
-    fn decide_few(&mut self, packet: &mut Packet, few: u64) {
-        let (mut triangles, mut numbers) = (CertainLanes::NONE, [0; LANES]);
-        for k in lanes(few) {
-            let Some(corners) = self.tree.corners(self.pending[k]) else { continue };
+    fn finish_flats(&mut self, packet: &mut Packet, open: u64) -> u64 {
+        let (mut planes, mut numbers, mut all) = (PlaneLanes::NONE, [0; LANES], 0);
+        for k in lanes(open) {
+            let Some(flat) = self.tree.flat(self.pending[k]) else { continue };
             #[cfg(feature = "leaf-study")]
             crate::accel::study::count_triangle();
-            triangles.set(k, corners);
-            numbers[k] = self.accel.numbers[self.pending[k] as usize];
+            planes.set(k, &flat.plane);
+            numbers[k] = flat.number;
+            all |= 1 << k;
         }
-        let range = hull(few);
+        let range = hull(all);
         let [first, second] = &mut self.crossed;
         for k in range.clone() {
-            let t = triangles.parameter(k, self.rays);
-            first[k] = if few >> k & 1 != 0 { t } else { f64::NAN };
+            let t = planes.parameter(k, self.rays);
+            first[k] = if all >> k & 1 != 0 { t } else { f64::NAN };
             second[k] = f64::NAN;
         }
         self.offer_lanes(packet, |k| numbers[k], range);
+        all
     }
 }
 
@@ -204,13 +188,13 @@ impl<S: Simd> Searches<S> for Nearest<'_> {
     ) {
         // A pending hit loses to one that ends before it starts; where intervals overlap, both are decided.
         let Some([from, to]) = certain else {
-            return self.decide(simd, packet, place, 1 << k, false);
+            return self.decide(simd, packet, place, k, false);
         };
         if from > packet.limit[k] {
             return;
         }
         if to >= self.from[k] && self.pending[k] != u32::MAX {
-            self.decide(simd, packet, self.pending[k], 1 << k, true);
+            self.decide(simd, packet, self.pending[k], k, true);
         }
         (self.pending[k], self.from[k]) = (place, from);
         packet.limit[k] = packet.limit[k].min(to);
