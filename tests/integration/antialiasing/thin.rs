@@ -235,7 +235,7 @@ fn thin_flat_things_are_found() {
         let (x, y, lean) = (number(-8.0, 8.0), number(-8.0, 3.0), number(-0.8, 0.8));
         let [dx, dy] = [lean.sin(), lean.cos()].map(|part| 5.0 * part);
         let [u, v] = [lean.cos(), -lean.sin()].map(|part| 0.2 * pixel * part);
-        if k % 2 == 0 {
+        if k.is_multiple_of(2) {
             format!("quad = {{ corner = [{x}, {y}, 0], edges = [[{dx}, {dy}, 0], [{u}, {v}, 0]] }}")
         } else {
             let corners = [[x, y], [x + u, y + v], [x + dx, y + dy]].map(|[x, y]| [x, y, 0.0]);
