@@ -15,6 +15,9 @@ use crate::{
 /// Bytes that are hashed at a time.
 const AT_ONCE: usize = 1 << 16;
 
+/// Shapes that are asked for before the first of them is hashed.
+const AT_HAND: u32 = 64;
+
 impl Scene {
     /// A hash of shapes, materials, textures, lights, background, camera and cutoff, in hexadecimal digits: scenes that
     /// hash alike look alike, whatever their files are called and however they are written.
@@ -38,9 +41,15 @@ impl Scene {
         self.materials.iter().for_each(|material| hash.material(material));
         hash.count(self.accel.len());
         let mut last_mesh = None;
-        for primitive in 0..self.accel.len() as u32 {
-            hash.number(self.material_of[primitive as usize]);
-            hash.shape(self.shape(primitive), &mut last_mesh);
+        let count = self.accel.len() as u32;
+        for first in (0..count).step_by(AT_HAND as usize) {
+            let some = first..count.min(first.saturating_add(AT_HAND));
+            // In memory they are in the order of the tree.
+            self.accel.prefetch(some.clone().map(|primitive| self.shape(primitive)));
+            for primitive in some {
+                hash.number(self.material_of[primitive as usize]);
+                hash.shape(self.shape(primitive), &mut last_mesh);
+            }
         }
         hash.finish()
     }
