@@ -49,7 +49,7 @@ use division::Division;
 use packet::{BlockedPacket, NearestPacket};
 use query::Nearest;
 pub use simd::Isa;
-use simd::{Kernel, Simd, dispatch};
+use simd::{Instructions, Kernel, Simd};
 use tree::{Tree, arrange};
 use walk::MAX_DEPTH;
 
@@ -100,7 +100,7 @@ pub struct Accel {
     /// How many are in the tree.
     inside: usize,
     bounds: Bounds,
-    isa: Isa,
+    instructions: Instructions,
     /// How often a query ran, by instructions.
     #[cfg(test)]
     ran: tests::pictures::Ran,
@@ -160,7 +160,7 @@ impl Accel {
             places,
             inside,
             bounds,
-            isa: Isa::detect(),
+            instructions: Instructions::of(Isa::detect()),
             #[cfg(test)]
             ran: tests::pictures::Ran::default(),
         }
@@ -173,20 +173,20 @@ impl Accel {
 
     /// Has queries use the instructions of `isa`, or the portable ones where the machine lacks them.
     pub fn set_isa(&mut self, isa: Isa) {
-        self.isa = if isa.is_available() { isa } else { Isa::Portable };
+        self.instructions = Instructions::of(isa);
     }
 
     /// Runs `kernel` with the instructions that queries use.
     #[cfg(not(test))]
     #[inline(always)]
     fn dispatch<K: Kernel>(&self, kernel: K) -> K::Output {
-        dispatch(self.isa, kernel)
+        self.instructions.run(kernel)
     }
 
     /// Runs `kernel` likewise, and notes by which instructions it really runs.
     #[cfg(test)]
     fn dispatch<K: Kernel>(&self, kernel: K) -> K::Output {
-        dispatch(self.isa, tests::pictures::Noted { kernel, ran: &self.ran })
+        self.instructions.run(tests::pictures::Noted { kernel, ran: &self.ran })
     }
 
     /// The number of primitives.
@@ -223,7 +223,7 @@ impl Accel {
 
     /// The instructions that queries use.
     pub fn isa(&self) -> Isa {
-        self.isa
+        self.instructions.isa()
     }
 
     /// Runs `work` compiled for the instructions that queries use, so that its fused multiply-adds are instructions

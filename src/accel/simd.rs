@@ -28,14 +28,55 @@ impl Isa {
 
     /// Whether this machine has it.
     pub fn is_available(self) -> bool {
-        match self {
-            Self::Portable => true,
+        Instructions::of(self).isa() == self
+    }
+}
+
+/// Instructions that this machine has; the proof comes with each.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Instructions {
+    Portable(Portable),
+    #[cfg(target_arch = "x86_64")]
+    Avx2(super::simd_x86::Avx2),
+    #[cfg(target_arch = "x86_64")]
+    Avx512(super::simd_x86::Avx512),
+}
+
+impl Instructions {
+    /// Those of `isa`, or the portable ones where the machine lacks them.
+    pub(super) fn of(isa: Isa) -> Self {
+        match isa {
+            Isa::Portable => None,
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => super::simd_x86::Avx2::detect().is_some(),
+            Isa::Avx2 => super::simd_x86::Avx2::detect().map(Self::Avx2),
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512 => super::simd_x86::Avx512::detect().is_some(),
+            Isa::Avx512 => super::simd_x86::Avx512::detect().map(Self::Avx512),
             #[cfg(not(target_arch = "x86_64"))]
-            Self::Avx2 | Self::Avx512 => false,
+            Isa::Avx2 | Isa::Avx512 => None,
+        }
+        .unwrap_or(Self::Portable(Portable))
+    }
+
+    /// Whose they are.
+    pub(super) fn isa(self) -> Isa {
+        match self {
+            Self::Portable(_) => Isa::Portable,
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(_) => Isa::Avx2,
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(_) => Isa::Avx512,
+        }
+    }
+
+    /// Runs `kernel` with them.
+    #[inline(always)]
+    pub(super) fn run<K: Kernel>(self, kernel: K) -> K::Output {
+        match self {
+            Self::Portable(simd) => simd.vectorize(kernel),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(simd) => simd.vectorize(kernel),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(simd) => simd.vectorize(kernel),
         }
     }
 }
@@ -46,24 +87,6 @@ pub(super) trait Kernel {
 
     /// Must be `#[inline(always)]`.
     fn run<S: Simd>(self, simd: S) -> Self::Output;
-}
-
-/// Runs `kernel` with the instructions of `isa`, or the portable ones where the machine lacks them.
-#[inline(always)]
-pub(super) fn dispatch<K: Kernel>(isa: Isa, kernel: K) -> K::Output {
-    match isa {
-        #[cfg(target_arch = "x86_64")]
-        Isa::Avx2 => match super::simd_x86::Avx2::detect() {
-            Some(avx2) => avx2.vectorize(kernel),
-            None => Portable.vectorize(kernel),
-        },
-        #[cfg(target_arch = "x86_64")]
-        Isa::Avx512 => match super::simd_x86::Avx512::detect() {
-            Some(avx512) => avx512.vectorize(kernel),
-            None => Portable.vectorize(kernel),
-        },
-        _ => Portable.vectorize(kernel),
-    }
 }
 
 /// Eight lanes, aligned.

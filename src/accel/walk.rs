@@ -72,17 +72,14 @@ impl<S: Simd> Slabs<S> {
 
 /// Children still to be visited, each with the parameter at which the ray enters it: the parameter's bits above the
 /// child's word, so that of two (not negative) entries the nearer is the smaller number.
-struct Stack {
-    slots: [MaybeUninit<u64>; STACK],
+///
+/// How many they are is a variable by itself, which the compiler keeps in a register; beside the slots it would be in memory.
+struct Stack<'s> {
+    slots: &'s mut [MaybeUninit<u64>; STACK],
     len: usize,
 }
 
-impl Stack {
-    #[inline(always)]
-    fn new() -> Self {
-        Self { slots: [const { MaybeUninit::uninit() }; STACK], len: 0 }
-    }
-
+impl Stack<'_> {
     #[inline(always)]
     fn push(&mut self, key: u64) {
         self.slots[self.len].write(key);
@@ -134,7 +131,8 @@ pub(super) fn walk<S: Simd, const SORTED: bool>(
         return;
     }
     let slabs = Slabs::new(simd, ray);
-    let mut stack = Stack::new();
+    let mut slots = [const { MaybeUninit::uninit() }; STACK];
+    let mut stack = Stack { slots: &mut slots, len: 0 };
     let mut child = tree.root;
     loop {
         if let Content::Node(k) = child.content() {

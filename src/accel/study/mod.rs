@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicU8, AtomicU64, Ordering};
 use super::{
     Accel, Isa,
     node::Content,
-    simd::{Kernel, Simd, dispatch},
+    simd::{Instructions, Kernel, Simd},
 };
 use crate::geometry::{Crossing, Ray, Shape, hit::Crossings};
 pub(super) use blocks::{Textbook, leaf};
@@ -155,7 +155,7 @@ impl<W: Work> Kernel for Run<W> {
 
 /// Runs `work` compiled for `isa`.
 pub fn run_compiled(isa: Isa, work: impl Work) {
-    dispatch(isa, Run(work));
+    Instructions::of(isa).run(Run(work));
 }
 
 /// What is nearer is ignored; the scene's size is about 1.

@@ -1,6 +1,6 @@
 //! The instructions agree with plain arithmetic, and the ones asked for are the ones that run.
 
-use super::super::simd::{Isa, Kernel, Portable, Simd, dispatch};
+use super::super::simd::{Instructions, Isa, Kernel, Portable, Simd};
 
 /// Every operation on three groups of numbers, and the name of what computed them.
 struct Everything([[f32; 8]; 3]);
@@ -41,10 +41,10 @@ fn instructions_agree_with_plain_arithmetic() {
         [[nan; 8], [1.0, nan, -1.0, 0.0, 2.0, 3.0, inf, -inf], [nan; 8]],
     ];
     for input in inputs {
-        let (name, expected, masks) = dispatch(Isa::Portable, Everything(input));
+        let (name, expected, masks) = Instructions::of(Isa::Portable).run(Everything(input));
         assert_eq!(name, std::any::type_name::<Portable>());
         for isa in Isa::ALL.into_iter().filter(|isa| isa.is_available()) {
-            let (name, values, found) = dispatch(isa, Everything(input));
+            let (name, values, found) = Instructions::of(isa).run(Everything(input));
             assert!(name.ends_with(&format!("{isa:?}")), "{isa:?} ran as {name}");
             assert_eq!(found, masks, "{isa:?}");
             let bits = |v: &[[f32; 8]]| -> Vec<u32> {

@@ -12,7 +12,6 @@ use crate::{
     accel::{
         Accel, Isa,
         packet::{BlockedPacket, NearestPacket},
-        simd::dispatch,
     },
     geometry::{
         Crossing, Hit, Ray, Shape, Surface,
@@ -228,7 +227,7 @@ fn wide_shadows_are_traced_in_parts() {
     let go_on = |_: usize, _: u32, _: Crossing| ControlFlow::Continue(());
     let (opaque, visit) = (&|_: u32| true, &mut { go_on });
     let (blocked, alone) =
-        dispatch(accel.isa, BlockedPacket { accel: &accel, rays, target, opaque, visit });
+        accel.instructions.run(BlockedPacket { accel: &accel, rays, target, opaque, visit });
     assert_eq!(alone, 0, "rays by themselves");
     let is_blocked =
         |k: usize| accel.is_blocked(&rays.ray(k), 1.0, opaque, |_, _| ControlFlow::Continue(()));
@@ -245,5 +244,5 @@ pub(super) fn is_traced_whole(accel: &Accel, all: &[Ray]) -> bool {
         dir.set(k, ray.dir);
     }
     let rays = &RayLanes { origin: &origin, dir: &dir, from: None, used: u64::MAX };
-    dispatch(accel.isa, NearestPacket { accel, rays, hits: &mut hits })
+    accel.instructions.run(NearestPacket { accel, rays, hits: &mut hits })
 }
