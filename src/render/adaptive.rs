@@ -62,13 +62,13 @@ impl Adaptive {
     }
 
     /// Traces the centres of the area, and of the pixels around it, so that a part of a picture is that of the whole;
-    /// returns whether all are. Pixels are refined only by thresholds from `least` up.
+    /// returns whether all are. Pixels that are off by less than the squared error `least` are not refined.
     ///
     /// When `stop` says so, the pixels that are left have no samples, and nothing is to be refined.
     pub(super) fn begin<S: Sampler + Send>(
         &mut self,
         crew: &Crew<S>,
-        least: Threshold,
+        least: f32,
         stop: impl Fn() -> bool + Sync,
     ) -> bool {
         if !self.has_begun {
@@ -77,6 +77,8 @@ impl Adaptive {
             let rays = self.centers.values().iter().map(|sample| u64::from(sample.rays));
             self.spent = AtomicU64::new(rays.sum());
             self.known.look(crew, &self.stages, &self.centers, least);
+        } else if least < self.known.least() {
+            self.known.look_closer(crew, &self.stages, &self.centers, least);
         }
         self.has_begun
     }

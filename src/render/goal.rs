@@ -20,10 +20,13 @@ const RAYS_POWER: f64 = 1.5;
 const SHARE_OF_TIME: f64 = 0.3;
 /// Less time than this is not worth a step.
 const SHORTEST: Duration = Duration::from_millis(4);
+/// A pixel whose squared error is a smaller part of the one that is wanted for the picture is left as it is.
+const LEAST_PART: f64 = 1.0 / 64.0;
 
-/// The threshold at which the ladder ends.
-fn least() -> Threshold {
-    Threshold::PerRay(at_step(LAST_STEP))
+/// The squared error from which on pixels are refined for an error that is wanted of the picture: all others add next to
+/// nothing to it.
+fn least_for(wanted: f64) -> f32 {
+    (wanted * wanted * LEAST_PART) as f32
 }
 
 /// How a picture ends that is stopped.
@@ -83,7 +86,7 @@ impl Unfinished {
             if watch.keeps(&mut self) {
                 return (self.adaptive, stopped());
             }
-            if self.adaptive.begin(crew, least(), || watch.interrupts()) {
+            if self.adaptive.begin(crew, least_for(wanted), || watch.interrupts()) {
                 if let Some(outcome) = self.ending(wanted) {
                     return (self.adaptive, outcome);
                 }
@@ -136,7 +139,7 @@ impl Unfinished {
         watch: &Watch,
     ) -> (Adaptive, Outcome) {
         let before = self.adaptive.spent();
-        while !self.adaptive.begin(crew, least(), || watch.interrupts()) {
+        while !self.adaptive.begin(crew, 0.0, || watch.interrupts()) {
             if watch.keeps(&mut self) {
                 return (self.adaptive, stopped());
             }

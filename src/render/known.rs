@@ -32,6 +32,8 @@ const TILES_AT_ONCE: usize = 64;
 #[derive(Serialize, Deserialize)]
 pub(super) struct Known {
     area: Area,
+    /// The squared error from which on pixels may be refined.
+    least: f32,
     /// Of each tile.
     patches: Plane<Patch>,
     pub(super) colors: Plane<Rgb>,
@@ -52,20 +54,22 @@ impl Known {
     pub(super) fn new(area: &Area) -> Self {
         Self {
             area: *area,
+            least: f32::INFINITY,
             patches: Plane::new(area.grid(), Patch::default()),
             colors: Plane::new(*area, Rgb::ZERO),
             samples: Plane::new(*area, 0),
         }
     }
 
-    /// What the `centers` say of each pixel; thresholds to refine by go down to `least`.
+    /// What the `centers` say of each pixel; those with a squared error from `least` on may be refined.
     pub(super) fn look<S: Sampler + Send>(
         &mut self,
         crew: &Crew<S>,
         stages: &[Stage],
         centers: &Plane<Sample>,
-        least: Threshold,
+        least: f32,
     ) {
+        self.least = least;
         let (area, contrasts) = (self.area, Tiled::new(self.area));
         let unclear = Mutex::new(Unclear { of_one_color: Vec::new(), contrasts });
         let known = Mutex::new(&mut *self);
@@ -96,6 +100,42 @@ impl Known {
             known.samples.put(tile, samples);
         });
         self.expect_hidden(unclear.into_inner().unwrap_or_else(PoisonError::into_inner));
+    }
+
+    /// The squared error from which on pixels may be refined.
+    pub(super) fn least(&self) -> f32 {
+        self.least
+    }
+
+    /// The same as [`Known::look`] for a smaller `least`, after some pixels were refined, which stay as they are.
+    pub(super) fn look_closer<S: Sampler + Send>(
+        &mut self,
+        crew: &Crew<S>,
+        stages: &[Stage],
+        centers: &Plane<Sample>,
+        least: f32,
+    ) {
+        let before = self.take_patches();
+        self.look(crew, stages, centers, least);
+        let mut patches = self.take_patches();
+        for (patch, before) in patches.values_mut().iter_mut().zip(before.into_values()) {
+            // In the same order, and none is missing.
+            let mut refined = before.pixels.into_iter().filter(|pixel| pixel.stage > 0).peekable();
+            for pixel in &mut patch.pixels {
+                let is_same = |other: &Pixel| (other.x, other.y) == (pixel.x, pixel.y);
+                if let Some(refined) = refined.next_if(is_same) {
+                    *pixel = Pixel { has_changed: true, ..refined };
+                }
+            }
+            self.show(&mut patch.pixels, centers);
+            *patch = std::mem::take(patch).looked_over();
+        }
+        self.patches = patches;
+    }
+
+    fn take_patches(&mut self) -> Plane<Patch> {
+        let none = Plane::new(self.area.grid(), Patch::default());
+        std::mem::replace(&mut self.patches, none)
     }
 
     /// Adds what may hide to what the picture is expected to be off by.

@@ -90,8 +90,8 @@ pub enum Goal {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outcome {
     /// If the goal was an error, the threshold of the last step: pixels got more rays as long as their squared error in
-    /// levels, for each ray of their next stage, was at least this. The same value gives the same pixels, whatever part is
-    /// rendered.
+    /// levels, for each ray of their next stage, was at least this, unless it was less than a 64th of the square of the
+    /// error that was wanted. The same value gives the same pixels, whatever part is rendered.
     pub per_ray: Option<f32>,
     /// The error that was wanted but not reached.
     pub missed_error: Option<f64>,

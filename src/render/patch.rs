@@ -39,8 +39,8 @@ pub(super) struct FirstLook<'a, H> {
     /// What the scene tells of a pixel, if it tells of any here.
     pub(super) hint: Option<H>,
     pub(super) stages: &'a [Stage],
-    /// No pixel below it is refined.
-    pub(super) least: Threshold,
+    /// No pixel with a smaller squared error is refined.
+    pub(super) least: f32,
 }
 
 impl<H: Fn(i64, i64) -> Hint> FirstLook<'_, H> {
@@ -56,7 +56,8 @@ impl<H: Fn(i64, i64) -> Hint> FirstLook<'_, H> {
         });
         let outlook = Outlook::of(0.0, worths);
         let settled = outlook.expected;
-        (!outlook.may_exceed(*least)).then(|| Patch { settled, ..Patch::default() }.looked_over())
+        (!outlook.may_exceed(Threshold::Error(*least)))
+            .then(|| Patch { settled, ..Patch::default() }.looked_over())
     }
 
     /// The pixels one by one.
@@ -79,7 +80,7 @@ impl<H: Fn(i64, i64) -> Hint> FirstLook<'_, H> {
                 expected += pixel.heed(hint(x, y), center.color);
             }
             pixel.worth = Worth::of(&pixel, expected, stages, center);
-            if pixel.worth.exceeds(*least) {
+            if pixel.worth.exceeds(Threshold::Error(*least)) {
                 patch.pixels.push(pixel);
             } else {
                 patch.settled += f64::from(pixel.worth.expected);

@@ -88,7 +88,7 @@ pub(super) fn picture_watched<S: Sampler + Send>(
                 Goal::Mode => {
                     let mut adaptive = Adaptive::new(&area, width, most);
                     let threshold = Threshold::Error(error * error);
-                    if adaptive.begin(&crew, threshold, stop) {
+                    if adaptive.begin(&crew, error * error, stop) {
                         meter.reach(0.5);
                         adaptive.refine(&crew, threshold, true, stop);
                     }

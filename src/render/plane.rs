@@ -186,6 +186,10 @@ impl<T> Plane<T> {
         &self.values
     }
 
+    pub(super) fn values_mut(&mut self) -> &mut [T] {
+        &mut self.values
+    }
+
     pub(super) fn into_values(self) -> Vec<T> {
         self.values
     }
