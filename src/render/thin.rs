@@ -7,8 +7,9 @@ use crate::{camera::View, geometry::Brick, scene::Scene};
 
 /// Wider things than this, in pixels, are found by samples.
 pub(super) const WIDEST: f64 = 1.5;
-/// Narrower things, in pixels, change no colour by a quarter of a level.
-const NARROWEST: f64 = 1.0 / 1024.0;
+/// Narrower things, in pixels, change no colour by a quarter of a level, not even white ones on black, where the encoding is
+/// steepest (12.92).
+const NARROWEST: f64 = 1.0 / (1 << 14) as f64;
 /// Samples across the width of a thing.
 const ACROSS: f64 = 2.0;
 /// The tip of a cone that is no longer, in pixels, is left to samples; those of all but needles are.

@@ -205,8 +205,7 @@ where
             packet.limit[k] = BLOCKED;
             return;
         }
-        let flat = self.tree.flat(place).filter(|_| has_lanes());
-        let Some(flat) = flat else {
+        let Some(flat) = self.tree.flat(place).filter(|_| has_lanes()) else {
             return self.test_each(simd, packet, place as usize, 1 << k);
         };
         // A ray never meets the triangle that it leaves.
